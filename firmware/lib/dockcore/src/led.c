@@ -1,0 +1,63 @@
+#include "led.h"
+
+#include "hsv.h"
+
+static int64_t clamp(int64_t value, int64_t least, int64_t most)
+{
+    return value < least ? least : value > most ? most : value;
+}
+
+led_settings_t led_default_settings(void)
+{
+    const int16_t unit = METHOD_MATRIX_UNIT;
+    return (led_settings_t){
+        .matrix = {unit, 0, 0, 0, unit, 0, 0, 0, unit},
+        .gamma = METHOD_DEFAULT_GAMMA,
+        .limit = 255,
+        .common_anode = true,
+    };
+}
+
+bool led_settings_are_valid(const led_settings_t *settings)
+{
+    for (int i = 0; i < 3; i++)
+        if (settings->offset[i] < -255 || settings->offset[i] > 255)
+            return false;
+    return settings->gamma < METHOD_GAMMA_COUNT;
+}
+
+/* Light 0..65535 after the matrix row. */
+static uint32_t mix(const int16_t row[3], const uint16_t light[3])
+{
+    int64_t sum = METHOD_MATRIX_UNIT / 2;
+    for (int i = 0; i < 3; i++)
+        sum += (int64_t)row[i] * light[i];
+    return (uint32_t)clamp(sum / METHOD_MATRIX_UNIT, 0, UINT16_MAX);
+}
+
+static uint16_t with_polarity(uint32_t duty, const led_settings_t *settings)
+{
+    return (uint16_t)(settings->common_anode ? LED_FULL - duty : duty);
+}
+
+void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings)
+{
+    const rgb_t pure = rgb_from_hsv(hue, 255, 255);
+    const uint8_t code[3] = {pure.red, pure.green, pure.blue};
+    const uint16_t *decode = METHOD_GAMMA + 256 * settings->gamma;
+    uint16_t light[3];
+    for (int i = 0; i < 3; i++)
+        light[i] = decode[clamp(code[i] + settings->offset[i], 0, 255)];
+    for (int i = 0; i < 3; i++) {
+        const uint32_t mixed = mix(settings->matrix + 3 * i, light);
+        const uint32_t limited = (mixed * settings->limit + 127) / 255;
+        const uint32_t scaled = (limited * LED_FULL + UINT16_MAX / 2) / UINT16_MAX;
+        duty[i] = with_polarity(scaled, settings);
+    }
+}
+
+void led_dark(uint16_t duty[3], const led_settings_t *settings)
+{
+    for (int i = 0; i < 3; i++)
+        duty[i] = with_polarity(0, settings);
+}

@@ -1,0 +1,31 @@
+/* From a marker hue to the PWM duties of one RGB LED. */
+#ifndef LED_H
+#define LED_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "method.h"
+
+#define LED_FULL (1u << METHOD_PWM_BITS) /* duty of a channel that is solid on */
+
+typedef struct {
+    int16_t offset[3]; /* added to the 8-bit colour, R G B, -255..255 (paper) */
+    int16_t matrix[9]; /* rows R G B, on linear light, METHOD_MATRIX_UNIT = 1.0 */
+    uint8_t gamma;     /* index of the decoding exponent, < METHOD_GAMMA_COUNT */
+    uint8_t limit;     /* brightness, 255: all */
+    bool common_anode; /* the pin pulls the LED's cathode low: duty inverted */
+} led_settings_t;
+
+led_settings_t led_default_settings(void);
+
+bool led_settings_are_valid(const led_settings_t *settings);
+
+/* Duties 0..LED_FULL of a pure colour: offset, gamma decoding, 3 x 3 matrix,
+ * limit, polarity. */
+void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings);
+
+/* Duties that leave the LED dark. */
+void led_dark(uint16_t duty[3], const led_settings_t *settings);
+
+#endif

@@ -1,0 +1,123 @@
+"""What the detector says of one frame, and how that reads as JSON."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+RGB = tuple[int, int, int]
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Background:
+    """The water's colour: ``rgb`` 0..255, ``hue_deg`` 0..360 (None where the hue
+    means nothing: grey water, night), ``confidence`` 0..1."""
+
+    rgb: RGB
+    hue_deg: float | None
+    confidence: float
+
+
+@dataclass(frozen=True, slots=True)
+class Marker:
+    """The colour that the dock's LEDs should show now, a pure colour."""
+
+    rgb: RGB
+    hue_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Blob:
+    """A round spot in the image: centre ``x, y`` and ``radius``, in pixels.
+
+    ``accepted`` is False where the spatial filter threw it out.
+    """
+
+    x: float
+    y: float
+    radius: float
+    accepted: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """``T_camera_dock``: the dock in the camera frame (OpenCV: x right, y down, z forward).
+
+    ``t`` in metres; ``q_wxyz`` a unit quaternion that turns dock axes into camera
+    axes; ``reprojection_px`` the root mean square distance of the reprojected
+    markers from the measured ones.
+    """
+
+    t: tuple[float, float, float]
+    q_wxyz: tuple[float, float, float, float]
+    reprojection_px: float
+    alternative: Pose | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Detection:
+    """Everything one frame told.  Fields that do not apply are None.
+
+    ``state`` is ``found`` or ``not_found``; ``passed_fraction`` the share of
+    pixels in the colour mask, 0..1; ``markers`` maps the dock's marker names to
+    their pixel; ``timing_ms`` milliseconds by stage, with ``total``.
+    """
+
+    state: str
+    background: Background
+    marker: Marker
+    observed: RGB
+    passed_fraction: float
+    blobs: tuple[Blob, ...] = ()
+    markers: dict[str, Point] | None = None
+    pose: Pose | None = None
+    timing_ms: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def found(self) -> bool:
+        """True only when a full, consistent constellation was accepted."""
+        return self.state == "found"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of ``chromadock detect --json``, without file and frame."""
+        return {
+            "state": self.state,
+            "found": self.found,
+            "background": {
+                "rgb": list(self.background.rgb),
+                "hue_deg": _rounded(self.background.hue_deg, 2),
+                "confidence": _rounded(self.background.confidence, 3),
+            },
+            "marker": {
+                "rgb": list(self.marker.rgb),
+                "hue_deg": _rounded(self.marker.hue_deg, 2),
+            },
+            "observed": {"rgb": list(self.observed)},
+            "passed_fraction": _rounded(self.passed_fraction, 6),
+            "blobs": [
+                [_rounded(b.x, 2), _rounded(b.y, 2), _rounded(b.radius, 2)] for b in self.blobs
+            ],
+            "markers": None
+            if self.markers is None
+            else {name: [_rounded(x, 2), _rounded(y, 2)] for name, (x, y) in self.markers.items()},
+            "pose": None if self.pose is None else _pose_dict(self.pose),
+            "timing_ms": {stage: _rounded(ms, 2) for stage, ms in self.timing_ms.items()},
+        }
+
+
+def _pose_dict(pose: Pose) -> dict[str, Any]:
+    return {
+        "t": [_rounded(v, 4) for v in pose.t],
+        "q_wxyz": [_rounded(v, 6) for v in pose.q_wxyz],
+        "reprojection_px": _rounded(pose.reprojection_px, 3),
+        "alternative": None if pose.alternative is None else _pose_dict(pose.alternative),
+    }
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    """JSON has no NaN or infinity: both become null, like None."""
+    if value is None or not math.isfinite(value):
+        return None
+    return round(value, digits)

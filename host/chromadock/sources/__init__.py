@@ -1,0 +1,8 @@
+"""Frames from anywhere: a camera, a video, pictures, a pipeline, a URL; one interface."""
+
+from __future__ import annotations
+
+from chromadock.sources.base import Frame, Report, Source, ignore
+from chromadock.sources.opening import open_source
+
+__all__ = ["Frame", "Report", "Source", "ignore", "open_source"]

@@ -1,0 +1,77 @@
+"""What every source of frames looks like."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from types import TracebackType
+
+import numpy as np
+from numpy.typing import NDArray
+
+DEFAULT_FPS = 30.0
+"""Frames a second of pictures, and of cameras and videos that do not tell."""
+
+Report = Callable[[str], None]
+"""Takes one line about a picture that was skipped."""
+
+
+def ignore(_line: str) -> None:
+    """The ``Report`` of a caller who only looks at ``Source.errors``."""
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One picture: ``image`` HxWx3 uint8 BGR, the ``name`` of its file or camera, its
+    ``index`` in the source from 0 and its ``time_s`` in seconds from the start."""
+
+    image: NDArray[np.uint8]
+    name: str
+    index: int
+    time_s: float
+
+
+class Source(ABC):
+    """An iterable of ``Frame``; use it as a context manager or call ``close``.
+
+    Attributes
+    ----------
+    count
+        Number of frames, or None where nobody knows.
+    fps
+        Nominal frames a second.
+    live
+        True for cameras and streams, which have no end of their own.
+    errors
+        Pictures skipped so far because they could not be read.
+    """
+
+    count: int | None = None
+    fps: float = DEFAULT_FPS
+    live: bool = False
+    errors: int = 0
+
+    @abstractmethod
+    def __iter__(self) -> Iterator[Frame]:
+        """Frames in order.
+
+        Raises
+        ------
+        ChromadockError
+            Where the source breaks off.
+        """
+
+    def close(self) -> None:  # noqa: B027 - most sources hold nothing open
+        """Let go of the camera or file."""
+
+    def __enter__(self) -> Source:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

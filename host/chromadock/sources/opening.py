@@ -1,0 +1,113 @@
+"""From what the user typed to a ``Source``."""
+
+from __future__ import annotations
+
+import glob
+import os
+import re
+import stat
+from pathlib import Path
+
+from chromadock.errors import ChromadockError
+from chromadock.sources.base import DEFAULT_FPS, Report, Source, ignore
+from chromadock.sources.capture import Live, VideoFile, open_live
+from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture, natural_key
+
+_KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
+
+
+def open_source(text: str, fps: float = DEFAULT_FPS, report: Report = ignore) -> Source:
+    """Open what ``text`` names.
+
+    Parameters
+    ----------
+    text
+        A camera index (``0``) or device (``/dev/video0``), a video file, a picture, a
+        folder or glob of pictures, a GStreamer pipeline (has a ``!``), or a URL.  What
+        exists as a file wins over the other readings, except for bare camera indices.
+    fps
+        Frames a second of a folder or glob of pictures.
+    report
+        Called with one line for each picture that is skipped.
+
+    Raises
+    ------
+    ChromadockError
+        Where there is no such source, or it cannot be read.
+    """
+    if not (0 < fps < float("inf")):
+        raise ChromadockError(f"--fps is {fps:g}: it must be a positive number")
+    if text.isascii() and text.isdigit():
+        return open_live(int(text))
+    path = Path(text)
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError) as error:
+        return _not_a_path(text, fps, report, error)
+    if stat.S_ISDIR(mode):
+        return _folder(path, fps, report)
+    if stat.S_ISCHR(mode):
+        return open_live(text)
+    return _file(path, fps, report)
+
+
+def _not_a_path(text: str, fps: float, report: Report, error: Exception) -> Source:
+    """Pipelines, URLs and globs; anything else was meant as a path."""
+    if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
+        return open_live(text)
+    if "!" in text:
+        return open_live(text)
+    if glob.has_magic(text):
+        return _glob(text, fps, report)
+    if isinstance(error, PermissionError):
+        raise ChromadockError(f"{text}: permission denied: allow reading it")
+    raise ChromadockError(f"{text}: no such file or folder: {_KINDS}")
+
+
+def _file(path: Path, fps: float, report: Report) -> Source:
+    try:
+        with path.open("rb") as file:
+            empty = not file.read(1)
+    except OSError as error:
+        raise ChromadockError(
+            f"{path}: cannot be read ({error.strerror}): allow reading it"
+        ) from None
+    if empty:
+        raise ChromadockError(f"{path}: the file is empty: copy it again")
+    if is_picture(path):
+        return Pictures([path], [path.name], fps, report, single=True)
+    return VideoFile(path)
+
+
+def _folder(path: Path, fps: float, report: Report) -> Source:
+    try:
+        inside = [p for p in path.iterdir() if _is_visible_image(p)]
+    except OSError as error:
+        raise ChromadockError(
+            f"{path}: cannot read the folder ({error.strerror}): allow reading it"
+        ) from None
+    inside.sort(key=lambda p: natural_key(p.name))
+    if not inside:
+        suffixes = " ".join(sorted(IMAGE_SUFFIXES))
+        raise ChromadockError(f"{path}: no pictures in this folder: it needs some of {suffixes}")
+    return Pictures(inside, [p.name for p in inside], fps, report)
+
+
+def _glob(pattern: str, fps: float, report: Report) -> Source:
+    found = [Path(p) for p in glob.glob(pattern, recursive=True)]
+    found = [p for p in found if _is_visible_image(p)]
+    if not found:
+        raise ChromadockError(f"{pattern}: no picture matches: check the pattern and the folder")
+    found.sort(key=lambda p: natural_key(str(p)))
+    above = os.path.commonpath([p.parent for p in found])
+    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, report)
+
+
+def _is_visible_image(path: Path) -> bool:
+    """Dot files beside pictures are leftovers of other systems (``._001.jpg``)."""
+    return (
+        path.suffix.lower() in IMAGE_SUFFIXES and not path.name.startswith(".") and path.is_file()
+    )
+
+
+__all__ = ["Live", "open_source"]

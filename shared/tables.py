@@ -1,0 +1,49 @@
+"""The lookup tables of the method, from the numbers in ``method.toml``."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+Method = dict[str, Any]
+
+
+def hue_division(m: Method, turn: int) -> list[int]:
+    """``turn * 2^shift / (6 * chroma)``, rounded; 0 for chroma 0 (no hue)."""
+    unit = turn << m["hue"]["shift"]
+    return [0] + [(unit + 3 * d) // (6 * d) for d in range(1, 256)]
+
+
+def saturation_division(m: Method) -> list[int]:
+    """``255 * 2^shift / value``, rounded; 0 for value 0 (black)."""
+    unit = 255 << m["hue"]["shift"]
+    return [0] + [(2 * unit + v) // (2 * v) for v in range(1, 256)]
+
+
+def sine(m: Method) -> list[int]:
+    """One turn and a quarter, so that the cosine is the same table further on."""
+    turn, unit = m["hue"]["range"], m["hue"]["trig_unit"]
+    return [round(unit * math.sin(2 * math.pi * i / turn)) for i in range(turn + turn // 4)]
+
+
+def arctangent(m: Method) -> list[int]:
+    """Hue steps of the angle whose tangent is ``i / atan_steps``, over one octant."""
+    turn, steps = m["hue"]["range"], m["hue"]["atan_steps"]
+    return [round(math.atan(i / steps) * turn / (2 * math.pi)) for i in range(steps + 1)]
+
+
+def gamma(m: Method) -> list[int]:
+    """Code value 0..255 to linear light 0..65535, one run of 256 for each exponent."""
+    return [round(65535 * (i / 255) ** g) for g in m["led"]["gammas"] for i in range(256)]
+
+
+def all_tables(m: Method) -> dict[str, list[int]]:
+    """Every table under its name in C and Python."""
+    return {
+        "HUE_DIVISION": hue_division(m, m["hue"]["range"]),
+        "SATURATION_DIVISION": saturation_division(m),
+        "SINE": sine(m),
+        "ARCTANGENT": arctangent(m),
+        "GAMMA": gamma(m),
+        **{f"HUE_DIVISION_{n}": hue_division(m, n) for n in m["hue"]["opencv_ranges"]},
+    }

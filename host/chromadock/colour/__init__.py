@@ -1,0 +1,5 @@
+"""The colour decision: the same integers as the dock's C, in numpy.
+
+Held to ``shared/vectors`` and to the compiled dockcore bit by bit
+(``tests/parity``); the steps and their reasons are in ``docs/method.md``.
+"""

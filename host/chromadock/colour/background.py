@@ -1,0 +1,99 @@
+"""The water's colour: the fullest grey interval and the mean of its pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock import method
+from chromadock.colour.hsv import hsv_from_rgb, hue_cos, hue_of_vector, hue_sin, rgb_from_hsv
+
+
+@dataclass(frozen=True, slots=True)
+class BackgroundColour:
+    """Every value on the way to the background colour, as in the C ``background_t``.
+
+    Hue 0..1535; saturation, value, resultant (mean hue vector's length), share
+    (of the image) and confidence (the product of both) 0..255; ``meaningful`` is
+    False for grey water, night or a mixture of hues.
+    """
+
+    bin_counts: tuple[int, ...]
+    bin: int
+    hue_x: int
+    hue_y: int
+    chroma_sum: int
+    saturation_sum: int
+    value_sum: int
+    hue: int
+    saturation: int
+    value: int
+    resultant: int
+    share: int
+    confidence: int
+    meaningful: bool
+
+    @property
+    def rgb(self) -> tuple[int, int, int]:
+        """The mean colour, 0..255 a channel."""
+        return rgb_from_hsv(self.hue, self.saturation, self.value)
+
+
+def grey_bins(rgb: NDArray[np.uint8]) -> NDArray[np.int32]:
+    """Grey interval 0..4 of each pixel of an (..., 3) RGB image."""
+    grey: NDArray[np.uint8] = np.asarray(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY), np.uint8)
+    return (grey.astype(np.int32) * method.GREY_BINS) >> 8
+
+
+def grey_range(bin: int) -> tuple[int, int]:
+    """Least and greatest grey 0..255 of an interval."""
+    first = -(-256 * bin // method.GREY_BINS)
+    after = -(-256 * (bin + 1) // method.GREY_BINS)
+    return first, after - 1
+
+
+def background_colour(image: NDArray[np.uint8]) -> BackgroundColour:
+    """The background of a smoothed working image, (60, 80, 3) uint8 RGB."""
+    bins = grey_bins(image)
+    counts = np.bincount(bins.ravel(), minlength=method.GREY_BINS)
+    fullest = int(np.argmax(counts))  # the first of equals: ties go to the darker
+    hue, saturation, value, chroma = hsv_from_rgb(image[bins == fullest])
+    x = int((chroma * hue_cos(hue)).sum(dtype=np.int64))
+    y = int((chroma * hue_sin(hue)).sum(dtype=np.int64))
+    chroma_sum, saturation_sum, value_sum = (int(a.sum()) for a in (chroma, saturation, value))
+
+    n, size = int(counts[fullest]), bins.size
+    mean_saturation = (2 * saturation_sum + n) // (2 * n)
+    mean_value = (2 * value_sum + n) // (2 * n)
+    share = (510 * n + size) // (2 * size)
+    mean_hue = hue_of_vector(x, y)
+    resultant = 0 if mean_hue is None else _resultant(x, y, mean_hue, chroma_sum)
+    return BackgroundColour(
+        bin_counts=tuple(int(c) for c in counts),
+        bin=fullest,
+        hue_x=x,
+        hue_y=y,
+        chroma_sum=chroma_sum,
+        saturation_sum=saturation_sum,
+        value_sum=value_sum,
+        hue=mean_hue or 0,
+        saturation=mean_saturation,
+        value=mean_value,
+        resultant=resultant,
+        share=share,
+        confidence=(resultant * share + 127) // 255,
+        meaningful=mean_saturation >= method.MIN_SATURATION
+        and mean_value >= method.MIN_VALUE
+        and resultant >= method.MIN_RESULTANT,
+    )
+
+
+def _resultant(x: int, y: int, mean_hue: int, chroma_sum: int) -> int:
+    """Length of the mean hue vector over the mean chroma, by projection, 0..255."""
+    quarter = method.HUE_RANGE // 4
+    along = x * int(method.SINE[mean_hue + quarter]) + y * int(method.SINE[mean_hue])
+    length = along // method.TRIG_UNIT**2
+    return min(255, (510 * length + chroma_sum) // (2 * chroma_sum))

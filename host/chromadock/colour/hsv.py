@@ -1,0 +1,96 @@
+"""RGB and HSV on the hexcone, and hues as vectors, in integers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock import method
+
+_DIVISIONS = {
+    method.HUE_RANGE: method.HUE_DIVISION,
+    180: method.HUE_DIVISION_180,
+    256: method.HUE_DIVISION_256,
+}
+
+
+def hsv_from_rgb(
+    rgb: NDArray[np.uint8], hue_range: int = method.HUE_RANGE
+) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]:
+    """Hue, saturation, value and chroma.
+
+    With ``hue_range`` 180 or 256 the first three equal OpenCV's 8-bit
+    ``COLOR_RGB2HSV`` and ``COLOR_RGB2HSV_FULL`` on every colour.
+
+    Parameters
+    ----------
+    rgb : (..., 3) uint8.
+    hue_range : 1536, 180 or 256 steps a turn; red 0, green a third, blue two thirds.
+
+    Returns
+    -------
+    Four (...) int32: hue 0..hue_range-1, the others 0..255.
+    """
+    r, g, b = (rgb[..., c].astype(np.int32) for c in range(3))
+    value = np.maximum(np.maximum(r, g), b)
+    chroma = value - np.minimum(np.minimum(r, g), b)
+    distance = np.where(
+        value == r, g - b, np.where(value == g, b - r + 2 * chroma, r - g + 4 * chroma)
+    )
+    half = 1 << (method.HSV_SHIFT - 1)
+    hue = (distance * _DIVISIONS[hue_range][chroma] + half) >> method.HSV_SHIFT
+    hue = np.where(hue < 0, hue + hue_range, hue)
+    saturation = (chroma * method.SATURATION_DIVISION[value] + half) >> method.HSV_SHIFT
+    return hue, saturation, value, chroma
+
+
+def rgb_from_hsv(hue: int, saturation: int, value: int) -> tuple[int, int, int]:
+    """The inverse for one colour; hue 0..1535, the others 0..255.
+
+    A pure colour (saturation and value 255) goes to its hue and back unchanged.
+    """
+    low = value - (value * saturation + 127) // 255
+    chroma = value - low
+    sextant, step = hue >> 8, hue & 255
+    rising = low + ((chroma * step + 128) >> 8)
+    falling = low + ((chroma * (256 - step) + 128) >> 8)
+    return (
+        (value, rising, low),
+        (falling, value, low),
+        (low, value, rising),
+        (low, falling, value),
+        (rising, low, value),
+        (value, low, falling),
+    )[sextant]
+
+
+def hue_cos(hue: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Cosine in units of ``method.TRIG_UNIT``; hue 0..1535."""
+    return method.SINE[hue + method.HUE_RANGE // 4]
+
+
+def hue_sin(hue: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Sine in units of ``method.TRIG_UNIT``; hue 0..1535."""
+    return method.SINE[hue]
+
+
+def hue_of_vector(x: int, y: int) -> int | None:
+    """Hue 0..1535 of a vector; None of the zero vector, which has none."""
+    near, far = sorted((abs(x), abs(y)))
+    if far == 0:
+        return None
+    while far >= 1 << 21:  # the C keeps near * ATAN_STEPS within 32 bits
+        near, far = near >> 1, far >> 1
+    hue = int(method.ARCTANGENT[(near * method.ATAN_STEPS + far // 2) // far])
+    if abs(y) > abs(x):
+        hue = method.HUE_RANGE // 4 - hue
+    if x < 0:
+        hue = method.HUE_RANGE // 2 - hue
+    if y < 0:
+        hue = method.HUE_RANGE - hue
+    return hue % method.HUE_RANGE
+
+
+def degrees(hue: int) -> float:
+    """Hue steps to degrees, 0..360."""
+    return hue * 360.0 / method.HUE_RANGE

@@ -1,0 +1,58 @@
+"""Any frame to the 80 x 60 image that the decision is made on."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock import method
+
+RGB888_SCALE = (255, 255, 255)
+RGB565_SCALE = (31, 63, 31)
+
+
+def unpack_rgb565(data: bytes, width: int, height: int) -> NDArray[np.uint8]:
+    """Big-endian RGB565 to a (height, width, 3) array, R G B on RGB565_SCALE."""
+    word = np.frombuffer(data, dtype=">u2").reshape(height, width).astype(np.uint16)
+    return np.stack((word >> 11, word >> 5 & 63, word & 31), axis=-1).astype(np.uint8)
+
+
+def working_image(
+    pixels: NDArray[np.uint8], scale: tuple[int, int, int] = RGB888_SCALE
+) -> NDArray[np.uint8]:
+    """Box average of a frame.
+
+    Cell ``i`` of ``n`` covers the pixels from ``floor(i * size / n)`` up to, not
+    including, ``floor((i + 1) * size / n)``, at least one.
+
+    Parameters
+    ----------
+    pixels : (H, W, 3) uint8, any channel order.
+    scale : full scale of each channel, in the same order.
+
+    Returns
+    -------
+    (60, 80, 3) uint8, same channel order, 0..255, rounded once, halves up.
+    """
+    height, width = pixels.shape[:2]
+    y0, y1 = _boxes(height, method.WORKING_HEIGHT)
+    x0, x1 = _boxes(width, method.WORKING_WIDTH)
+    # Sums may wrap in 32 bits; their differences, the boxes, do not.
+    integral = cv2.integral(pixels).view(np.uint32)
+    top, bottom = integral[y0], integral[y1]
+    sums = (bottom[:, x1] - bottom[:, x0] - top[:, x1] + top[:, x0]).astype(np.int64)
+    count = ((y1 - y0)[:, None] * (x1 - x0)[None, :])[..., None]
+    full = np.asarray(scale, dtype=np.int64) * count
+    return ((510 * sums + full) // (2 * full)).astype(np.uint8)
+
+
+def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """3 x 3 binomial blur of the working image, edge pixels repeated outwards."""
+    return np.asarray(cv2.GaussianBlur(image, (3, 3), 0, borderType=cv2.BORDER_REPLICATE), np.uint8)
+
+
+def _boxes(size: int, cells: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First and one past the last source pixel of each cell."""
+    edges = np.arange(cells + 1) * size // cells
+    return edges[:-1], np.maximum(edges[1:], edges[:-1] + 1)

@@ -1,0 +1,42 @@
+"""Compare dockcore, numpy and the OpenCV on the path over all 2^24 colours.
+
+Prints ``<OpenCV version> <colours compared> <differences>``; run by test_tables.py
+under each OpenCV.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import cv2
+import numpy as np
+from chromadock_firmware import hsv_from_rgb as c_hsv
+
+from chromadock.colour.background import grey_bins
+from chromadock.colour.hsv import hsv_from_rgb as numpy_hsv
+
+CHUNK = 1 << 20
+CODES = {180: cv2.COLOR_RGB2HSV, 256: cv2.COLOR_RGB2HSV_FULL}
+
+
+def main(hue_range: int) -> None:
+    compared = different = 0
+    for start in range(0, 1 << 24, CHUNK):
+        index = np.arange(start, start + CHUNK, dtype=np.uint32)
+        rgb = np.stack((index >> 16, index >> 8 & 255, index & 255), -1).astype(np.uint8)
+        by_c = np.stack(c_hsv(rgb, hue_range), -1)
+        by_numpy = np.stack(numpy_hsv(rgb, hue_range)[:3], -1)
+        different += int((by_c != by_numpy).any(-1).sum())
+        if hue_range in CODES:
+            by_opencv = cv2.cvtColor(rgb[None], CODES[hue_range])[0]
+            different += int((by_c != by_opencv).any(-1).sum())
+        else:  # the bins of the background step, whose grey comes from OpenCV
+            r, g, b = rgb.astype(np.int64).T
+            grey = (9798 * r + 19235 * g + 3735 * b + 16384) >> 15
+            different += int((grey_bins(rgb[None])[0] != grey * 5 >> 8).sum())
+        compared += len(rgb)
+    print(cv2.__version__, compared, different)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))

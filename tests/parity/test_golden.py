@@ -1,0 +1,69 @@
+"""The golden vectors against numpy and against dockcore."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from chromadock_firmware import Dock, Settings, ffi, lib
+from comparison import assert_same, c_decision, numpy_decision
+
+from chromadock.colour.hsv import rgb_from_hsv
+from chromadock.colour.marker import RollingHue
+
+
+@pytest.mark.parametrize("decision", [numpy_decision, c_decision])
+def test_every_intermediate_value_of_the_golden_frames(golden: dict[str, Any], decision) -> None:
+    assert len(golden["frames"]) >= 18
+    for record in golden["frames"]:
+        data = golden["pixels"][record["frame_at"] :][: record["frame_bytes"]]
+
+        def image(key: str, record: dict[str, Any] = record) -> np.ndarray:
+            pixels = golden["pixels"][record[key] :][: 60 * 80 * 3]
+            return np.frombuffer(pixels, np.uint8).reshape(60, 80, 3)
+
+        background = {k: v for k, v in record["background"].items() if k != "rgb"}
+        expected = {
+            "working": image("working_at"),
+            "smoothed": image("smoothed_at"),
+            **background,
+            "marker_hue": record["marker_hue"],
+        }
+        got = decision(
+            data, record["width"], record["height"], record["format"], record["mapping"]
+        )
+        assert_same({name: got[name] for name in expected}, expected, record["name"])
+        assert set(got) == set(expected)
+        colour = record["background"]
+        rgb = rgb_from_hsv(colour["hue"], colour["saturation"], colour["value"])
+        assert list(rgb) == colour["rgb"]
+
+
+def test_rolling_mean_in_numpy_and_c(golden: dict[str, Any]) -> None:
+    for vector in golden["rolling"]:
+        rolling = RollingHue(vector["window_ms"])
+        state = ffi.new("rolling_t *")
+        lib.rolling_init(state)
+        for (now_ms, hue), mean in zip(vector["decisions"], vector["means"], strict=True):
+            where = (vector["name"], now_ms)
+            assert rolling.add(hue, now_ms) == mean, where
+            assert lib.rolling_add(state, hue, now_ms, vector["window_ms"]) == mean, where
+
+
+def test_led_duties_in_c(golden: dict[str, Any]) -> None:
+    for vector in golden["led"]:
+        led = {f"led_{name}": value for name, value in vector["led"].items()}
+        settings = Settings(**led).to_c()
+        duty = ffi.new("uint16_t[3]")
+        lib.led_duties(duty, vector["hue"], ffi.addressof(settings, "led"))
+        assert list(duty) == vector["duties"], vector
+
+
+def test_a_whole_dock_gives_the_golden_duties(golden: dict[str, Any]) -> None:
+    for record in golden["frames"]:
+        dock = Dock(Settings(mapping=record["mapping"]))
+        data = golden["pixels"][record["frame_at"] :][: record["frame_bytes"]]
+        dock.frame(data, record["width"], record["height"], record["format"], 0)
+        assert dock.marker_hue == record["marker_hue"], record["name"]
+        assert list(dock.duties) == record["duties"], record["name"]

@@ -1,0 +1,39 @@
+# Everything starts here: `make help` lists the targets.
+# Each target sets up what it needs first; what is in place already is left alone.
+
+PYTHON ?= python3
+VENV := .venv/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test bench lint format generate clean setup-demo
+
+help: ## List these targets
+	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' Makefile | expand -t 12
+
+setup: ## Install everything that the tests need
+	@$(PYTHON) tools/setup test
+
+setup-demo:
+	@$(PYTHON) tools/setup demo
+
+demo: setup-demo ## Dock and vehicle in simulated water: out/demo/
+	@$(VENV)/chromadock demo
+
+test: setup ## Run all checks and all tests
+	@$(VENV)/python tools/test.py
+
+bench: setup ## Measure against the budgets: out/bench.json
+	@$(VENV)/python tools/bench.py
+
+lint: setup ## Run the checks of the source code only
+	@$(VENV)/python tools/lint.py
+
+format: setup ## Format the Python and C sources
+	@$(VENV)/python tools/format.py
+
+generate: setup-demo ## Write tables and golden vectors from shared/method.toml
+	@$(VENV)/python shared/generate.py
+
+clean: ## Remove everything that was installed, built or written here
+	rm -rf .venv build out .pio .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf host/*.egg-info firmware/bindings/build firmware/bindings/*.egg-info

@@ -1,0 +1,119 @@
+"""The checks of the source code: .venv/bin/python tools/lint.py.
+
+Each counts as one test.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from outcome import ROOT, Outcome, missing, show_step
+
+# The programs that pip installed beside this Python.
+BIN = Path(sys.executable).parent
+C_FOLDERS = ("firmware", "tests/firmware")
+CPPCHECK_CACHE = ROOT / "build" / "cppcheck"
+
+
+def handwritten_c_files() -> list[str]:
+    """List the C sources and headers, less the generated ones, which say so at their top."""
+    files = (file for folder in C_FOLDERS for file in (ROOT / folder).rglob("*.[ch]"))
+    return sorted(
+        str(file.relative_to(ROOT))
+        for file in files
+        if "build" not in file.parts[len(ROOT.parts) :] and not is_generated(file)
+    )
+
+
+def is_generated(file: Path) -> bool:
+    """Tell whether a file is written by a program."""
+    with file.open(errors="replace") as text:
+        return "do not edit" in text.readline().lower()
+
+
+def check(*command: str | Path) -> Outcome:
+    """Run one check; it passes if it exits with 0."""
+    done = subprocess.run(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    if done.returncode == 0:
+        return Outcome(passed=1)
+    return Outcome(failed=1, output=done.stdout)
+
+
+def contract() -> Outcome:
+    """Check that the generated tables are what shared/method.toml says."""
+    return check(sys.executable, "shared/generate.py", "--check")
+
+
+def ruff_check() -> Outcome:
+    """Check the Python sources."""
+    return check(BIN / "ruff", "check", "--output-format=concise", ".")
+
+
+def ruff_format() -> Outcome:
+    """Check the format of the Python sources."""
+    return check(BIN / "ruff", "format", "--check", "--output-format=concise", ".")
+
+
+def mypy() -> Outcome:
+    """Check the types of the host package."""
+    return check(BIN / "mypy", "--strict", "host/chromadock")
+
+
+def clang_format() -> Outcome:
+    """Check the format of the C sources."""
+    outcome = check(BIN / "clang-format", "--dry-run", "--Werror", *handwritten_c_files())
+    # The first place in each file; `make format` mends them all anyway.
+    places = [line for line in outcome.output.splitlines() if ": error:" in line]
+    firsts = {place.split(":")[0]: place for place in reversed(places)}
+    outcome.output = "\n".join(reversed(firsts.values()))
+    return outcome
+
+
+def cppcheck() -> Outcome:
+    """Look for faults in the C sources."""
+    reason = missing("cppcheck")
+    if reason is not None:
+        return Outcome(skips=[("cppcheck", reason)])
+    CPPCHECK_CACHE.mkdir(parents=True, exist_ok=True)
+    return check(
+        "cppcheck",
+        "--quiet",
+        "--std=c11",
+        "--enable=warning,performance,portability",
+        "--inline-suppr",
+        "--suppress=missingIncludeSystem",
+        "--error-exitcode=1",
+        f"--cppcheck-build-dir={CPPCHECK_CACHE.relative_to(ROOT)}",
+        "-j2",
+        "-Ifirmware/lib/dockcore/src",
+        *handwritten_c_files(),
+    )
+
+
+LINTS: Sequence[tuple[str, Callable[[], Outcome]]] = (
+    ("contract", contract),
+    ("ruff check", ruff_check),
+    ("ruff format", ruff_format),
+    ("mypy --strict", mypy),
+    ("clang-format", clang_format),
+    ("cppcheck", cppcheck),
+)
+
+
+def main() -> int:
+    """Run all checks and return the exit status."""
+    total = Outcome()
+    for name, step in LINTS:
+        total.add(show_step(name, step))
+    for name, reason in total.skips:
+        print(f"skipped: {name}: {reason}")
+    return 1 if total.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,59 @@
+"""Sets up all that `make demo` or `make test` needs: python3 tools/setup {demo,test}."""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import sys
+
+import debian
+import environment
+import native_tests
+from paths import BUILD, LOG
+from report import SetupError, Unavailable
+
+
+def main() -> int:
+    """Do what is not done yet, and return the exit status."""
+    parser = argparse.ArgumentParser(prog="tools/setup", description=__doc__)
+    parser.add_argument("what", choices=["demo", "test"])
+    what = parser.parse_args().what
+    try:
+        with_lock(what)
+    except SetupError as error:
+        print(f"setup: error: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def with_lock(what: str) -> None:
+    """Set up while no second run of this does the same."""
+    BUILD.mkdir(exist_ok=True)
+    with (BUILD / "setup.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        LOG.unlink(missing_ok=True)
+        set_up_demo()
+        if what == "test":
+            set_up_tests()
+
+
+def set_up_demo() -> None:
+    """Make the environment with the host package and the firmware binding."""
+    debian.require_python_and_compiler()
+    environment.make_environment()
+    environment.install_host()
+    environment.install_binding()
+
+
+def set_up_tests() -> None:
+    """Add the test tools; what cannot be had is reported and recorded."""
+    unavailable = Unavailable()
+    environment.install_test_tools()
+    environment.install_opencv4()
+    debian.install_test_packages(unavailable)
+    native_tests.set_up(unavailable)
+    unavailable.save()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,112 @@
+"""Programs that come from Debian or Ubuntu packages."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+import sys
+import sysconfig
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from commands import run
+from report import SetupError, Unavailable, step
+
+PYTHON = f"python{sys.version_info.major}.{sys.version_info.minor}"
+
+# Package -> the program by which its presence is known.
+TEST_PACKAGES = {
+    "gcc-xtensa-lx106": "xtensa-lx106-elf-gcc",
+    "qemu-system-misc": "qemu-system-xtensa",
+    "clang": "clang",
+    "cppcheck": "cppcheck",
+}
+
+
+def require_python_and_compiler() -> None:
+    """Check what nothing works without, and install what apt-get can.
+
+    Raises:
+        SetupError: something is missing and cannot be installed from here.
+    """
+    if sys.version_info < (3, 10):  # noqa: UP036 - this is run by any Python
+        raise SetupError(
+            f"Python {sys.version.split()[0]} is too old: give a newer one, "
+            "for example `make PYTHON=python3.12 test`"
+        )
+    missing = [(what, packages) for what, packages, present in NECESSARY if not present()]
+    if missing and why_not_install() is None:
+        packages = [name for _, names in missing for name in names]
+        with step(f"Debian packages: {' '.join(packages)}"):
+            install(packages)
+    elif missing:
+        names = " ".join(name for _, names in missing for name in names)
+        whats = ", ".join(what for what, _ in missing)
+        raise SetupError(f"not here: {whats}; run `sudo apt-get install {names}`")
+
+
+def has_venv() -> bool:
+    """Tell whether virtual environments with pip can be made."""
+    return importlib.util.find_spec("venv") is not None and (
+        importlib.util.find_spec("ensurepip") is not None
+    )
+
+
+def has_headers() -> bool:
+    """Tell whether Python extensions can be compiled."""
+    return Path(sysconfig.get_path("include"), "Python.h").is_file()
+
+
+def has_compiler() -> bool:
+    """Tell whether there is a C compiler."""
+    return any(shutil.which(name) for name in (os.environ.get("CC", "cc"), "gcc"))
+
+
+# What nothing works without, and how its presence is known.
+NECESSARY: tuple[tuple[str, list[str], Callable[[], bool]], ...] = (
+    ("Python's venv module", [f"{PYTHON}-venv"], has_venv),
+    ("Python's C headers", [f"{PYTHON}-dev"], has_headers),
+    ("a C compiler", ["gcc", "libc6-dev"], has_compiler),
+)
+
+
+def install_test_packages(unavailable: Unavailable) -> None:
+    """Install the cross compiler, the emulator and the checkers that are not there."""
+    missing = [name for name, program in TEST_PACKAGES.items() if not shutil.which(program)]
+    if not missing:
+        return
+    hindrance = why_not_install()
+    if hindrance is not None:
+        for name in missing:
+            program = TEST_PACKAGES[name]
+            unavailable.add(name, f"no {program} here, and {hindrance.format(name)}")
+        return
+    for name in missing:
+        try:
+            with step(f"Debian package: {name}"):
+                install([name])
+            if not shutil.which(TEST_PACKAGES[name]):
+                raise SetupError(f"it does not contain {TEST_PACKAGES[name]} here")
+        except SetupError as error:
+            unavailable.add(name, str(error))
+
+
+def why_not_install() -> str | None:
+    """Say what keeps us from installing a Debian package {}, if anything does."""
+    if not shutil.which("apt-get"):
+        return "no apt-get to install {}"
+    if os.geteuid() != 0:
+        return "only root can install it: sudo apt-get install {}"
+    return None
+
+
+def install(packages: Sequence[str]) -> None:
+    """Install packages; the package lists are only fetched if it fails without."""
+    command = ["apt-get", "install", "-y", "-q", "--no-install-recommends", *packages]
+    quiet = {"DEBIAN_FRONTEND": "noninteractive"}
+    try:
+        run(command, "apt-get install", environment=quiet)
+    except SetupError:
+        run(["apt-get", "update", "-q"], "apt-get update", environment=quiet)
+        run(command, "apt-get install", environment=quiet)

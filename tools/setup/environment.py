@@ -1,0 +1,84 @@
+"""The virtual environment and the Python packages in it."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+from commands import run
+from paths import BUILD, CONSTRAINTS, ROOT, TOOLS, VENV, VENV_PYTHON
+from report import step
+from stamps import Stamp
+
+HOST = ROOT / "host"
+BINDING = ROOT / "firmware" / "bindings"
+DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
+OPENCV4 = BUILD / "opencv4"
+
+
+def make_environment() -> None:
+    """Create .venv; again if Python changed or the tree was moved."""
+    python = f"{sys.version_info[:2]} {Path(sys.executable).resolve()}"
+    stamp = Stamp(VENV, "venv", [python, str(ROOT)])
+    if stamp.fresh():
+        return
+    with step("virtual environment .venv"):
+        run([sys.executable, "-m", "venv", "--clear", VENV], "python3 -m venv")
+    stamp.set()
+
+
+def install_host() -> None:
+    """Install the host package, editable, with the packages it needs."""
+    requirements = TOOLS / "requirements-demo.txt"
+    stamp = Stamp(VENV, "host", [CONSTRAINTS, requirements, HOST / "pyproject.toml"])
+    if stamp.fresh():
+        return
+    with step("Python packages and the host package"):
+        # First what builds the packages: they are built without isolation, so
+        # that the pinned build tools are used and nothing is fetched twice.
+        pip_install("-r", requirements)
+        pip_install("--no-build-isolation", "-e", HOST)
+    stamp.set()
+
+
+def install_binding() -> None:
+    """Compile dockcore into a Python extension, anew when any of its files changed."""
+    stamp = Stamp(VENV, "binding", [CONSTRAINTS, DOCKCORE, BINDING])
+    if stamp.fresh():
+        return
+    with step("firmware binding"):
+        # setuptools would take object files of older headers from there.
+        shutil.rmtree(BINDING / "build", ignore_errors=True)
+        pip_install("--no-build-isolation", "--no-deps", "--force-reinstall", BINDING)
+    stamp.set()
+
+
+def install_test_tools() -> None:
+    """Install the test runners, the checkers and PlatformIO."""
+    requirements = TOOLS / "requirements-test.txt"
+    stamp = Stamp(VENV, "test-tools", [CONSTRAINTS, requirements])
+    if stamp.fresh():
+        return
+    with step("test tools and PlatformIO"):
+        pip_install("-r", requirements)
+    stamp.set()
+
+
+def install_opencv4() -> None:
+    """Put the newest OpenCV 4 beside OpenCV 5, for the parity tests alone."""
+    requirements = TOOLS / "requirements-opencv4.txt"
+    stamp = Stamp(OPENCV4, "opencv4", [requirements, str(sys.version_info[:2])])
+    if stamp.fresh():
+        return
+    with step("OpenCV 4 in build/opencv4"):
+        shutil.rmtree(OPENCV4, ignore_errors=True)
+        pip: list[str | Path] = [VENV_PYTHON, "-m", "pip", "install", "-q", "--no-deps"]
+        run([*pip, "--target", OPENCV4, "-r", requirements], "pip install")
+    stamp.set()
+
+
+def pip_install(*arguments: str | Path) -> None:
+    """Install into .venv, at the pinned versions."""
+    pip: list[str | Path] = [VENV_PYTHON, "-m", "pip", "install", "-q", "-c", CONSTRAINTS]
+    run([*pip, *arguments], "pip install", environment={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})

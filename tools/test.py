@@ -1,0 +1,86 @@
+"""All checks and tests: .venv/bin/python tools/test.py, by way of `make test`.
+
+One line a step, the output of those that fail, and at the very end the sum.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from junit import read_report
+from lint import BIN, LINTS
+from outcome import ROOT, Outcome, missing, show_step
+
+REPORTS = ROOT / "build" / "reports"
+
+
+def unity() -> Outcome:
+    """Run the firmware's Unity suites."""
+    reason = missing("pio test")
+    if reason is not None:
+        return Outcome(skips=[("pio test -e native", reason)])
+    report = REPORTS / "unity.xml"
+    pio_test: list[str | Path] = [BIN / "pio", "test", "-e", "native"]
+    return run_suite([*pio_test, "--junit-output-path", report], report)
+
+
+def pytest() -> Outcome:
+    """Run the host's tests and the comparisons of C, Python, OpenCV and Xtensa."""
+    report = REPORTS / "pytest.xml"
+    workers = ["-n", "2", "--dist", "worksteal"]
+    return run_suite(
+        [sys.executable, "-m", "pytest", "-q", *workers, f"--junitxml={report}"], report
+    )
+
+
+def run_suite(command: Sequence[str | Path], report: Path) -> Outcome:
+    """Run a test runner and read its report, trusting neither of them alone."""
+    report.parent.mkdir(parents=True, exist_ok=True)
+    report.unlink(missing_ok=True)
+    done = subprocess.run(
+        command,
+        cwd=ROOT,
+        env={**os.environ, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+    )
+    outcome = read_report(report)
+    outcome.output = done.stdout
+    if done.returncode != 0 and not outcome.failed:
+        outcome.failed = 1
+        outcome.output += f"\n{Path(command[0]).name}: exit status {done.returncode}"
+    elif not outcome.passed and not outcome.failed:
+        outcome.failed = 1
+        outcome.output += "\nno test case passed or failed: are there any?"
+    return outcome
+
+
+def main() -> int:
+    """Run everything and return the exit status."""
+    total = Outcome()
+    for name, step in (*LINTS, ("pio test -e native", unity), ("pytest", pytest)):
+        total.add(show_step(name, step))
+    for figure in total.figures:
+        print(f"figure: {figure}")
+    for name, reason in total.skips:
+        print(f"skipped: {name}: {reason}")
+    print(summary(total))
+    nothing_may_be_skipped = os.environ.get("CI", "").lower() in ("1", "true")
+    return 1 if total.failed or (total.skips and nothing_may_be_skipped) else 0
+
+
+def summary(total: Outcome) -> str:
+    """Sum up in one line."""
+    skipped = f", {len(total.skips)} skipped" if total.skips else ""
+    return f"{total.passed} passed, {total.failed} failed{skipped}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

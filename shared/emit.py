@@ -22,9 +22,7 @@ def c_type(name: str) -> str:
 def rows(values: Iterable[int], indent: str, width: int) -> str:
     """Numbers in lines of at most ``width`` columns."""
     text = ", ".join(str(v) for v in values)
-    return "\n".join(
-        textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent)
-    )
+    return "\n".join(textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent))
 
 
 def constants(m: Method) -> dict[str, int]:
@@ -138,10 +136,14 @@ def vectors_json(vectors: dict[str, Any]) -> str:
     return f'{{\n "banner": {json.dumps(vectors["banner"])},\n{body}\n}}\n'
 
 
-def c_vectors(banner: str, vectors: dict[str, Any]) -> str:
-    """``golden.c``: the vectors as the tables that ``golden.h`` declares."""
+def c_vectors(banner: str, vectors: dict[str, Any], pixels_digest: str) -> str:
+    """``golden.c``: the vectors as the tables that ``golden.h`` declares.
+
+    Build tools do not see what ``.incbin`` reads: the digest makes them compile again.
+    """
     parts = [
         f"/* {banner} */",
+        f"/* frames.bin: {pixels_digest} */",
         "/* clang-format off */",
         '#include "golden.h"',
         "",

@@ -59,7 +59,9 @@ def outputs() -> dict[str, bytes]:
         "firmware/lib/dockcore/src/method.c": emit.c_tables(banner, lookup),
         "host/chromadock/method.py": emit.python(banner, method, digest(method), lookup),
         "shared/vectors/golden.json": emit.vectors_json(vectors),
-        "tests/firmware/golden.c": emit.c_vectors(banner, vectors),
+        "tests/firmware/golden.c": emit.c_vectors(
+            banner, vectors, hashlib.sha256(pixels).hexdigest()
+        ),
     }
     files = {path: text.encode() for path, text in texts.items()}
     files["shared/vectors/frames.bin"] = pixels

@@ -10,8 +10,8 @@ typedef struct {
     frame_format_t format;
     uint16_t width, height;
     uint8_t mapping;
-    uint32_t frame_at, frame_bytes;     /* in golden_pixels */
-    uint32_t working_at, smoothed_at;   /* WORKING_PIXELS * 3 bytes, R G B */
+    uint32_t frame_at, frame_bytes;   /* in golden_pixels */
+    uint32_t working_at, smoothed_at; /* WORKING_PIXELS * 3 bytes, R G B */
     background_t background;
     rgb_t background_rgb;
     uint16_t marker_hue;

@@ -7,11 +7,11 @@
 /* OpenCV's COLOR_RGB2GRAY, then five equal intervals. */
 static inline uint32_t grey_bin(uint32_t pixel)
 {
-    const uint32_t grey =
-        (METHOD_GREY_RED * pixel_red(pixel) +
-         METHOD_GREY_GREEN * pixel_green(pixel) +
-         METHOD_GREY_BLUE * pixel_blue(pixel) + (1u << (METHOD_GREY_SHIFT - 1))) >>
-        METHOD_GREY_SHIFT;
+    const uint32_t grey = (METHOD_GREY_RED * pixel_red(pixel) +
+                           METHOD_GREY_GREEN * pixel_green(pixel) +
+                           METHOD_GREY_BLUE * pixel_blue(pixel) +
+                           (1u << (METHOD_GREY_SHIFT - 1))) >>
+                          METHOD_GREY_SHIFT;
     return grey * METHOD_GREY_BINS >> 8;
 }
 

@@ -10,16 +10,16 @@
 
 typedef struct {
     uint16_t bin_counts[METHOD_GREY_BINS]; /* pixels, dark to bright */
-    uint8_t bin;                           /* the fullest; of equals the darker */
-    hue_vector_t hue_sum;                  /* weighted by chroma */
+    uint8_t bin;          /* the fullest; of equals the darker */
+    hue_vector_t hue_sum; /* weighted by chroma */
     uint32_t chroma_sum, saturation_sum, value_sum;
-    uint16_t hue;        /* circular mean; 0 where the vector is zero */
-    uint8_t saturation;  /* arithmetic mean, 0..255 */
-    uint8_t value;       /* arithmetic mean, 0..255 */
-    uint8_t resultant;   /* 255: all of one hue, 0: hues cancel out */
-    uint8_t share;       /* of the image, 255: all of it */
-    uint8_t confidence;  /* resultant * share, 255: certain */
-    bool meaningful;     /* false: grey water, night or a mixture: no hue */
+    uint16_t hue;       /* circular mean; 0 where the vector is zero */
+    uint8_t saturation; /* arithmetic mean, 0..255 */
+    uint8_t value;      /* arithmetic mean, 0..255 */
+    uint8_t resultant;  /* 255: all of one hue, 0: hues cancel out */
+    uint8_t share;      /* of the image, 255: all of it */
+    uint8_t confidence; /* resultant * share, 255: certain */
+    bool meaningful;    /* false: grey water, night or a mixture: no hue */
 } background_t;
 
 /* Reads a smoothed image; writes each pixel's grey bin into its top bits. */

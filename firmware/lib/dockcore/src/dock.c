@@ -24,8 +24,8 @@ bool dock_settings_are_valid(const dock_settings_t *settings)
 void dock_init(dock_t *dock, const dock_settings_t *settings)
 {
     memset(dock, 0, sizeof *dock);
-    dock->settings = dock_settings_are_valid(settings) ? *settings
-                                                       : dock_default_settings();
+    dock->settings =
+        dock_settings_are_valid(settings) ? *settings : dock_default_settings();
     rolling_init(&dock->rolling);
 }
 

@@ -44,8 +44,8 @@ bool dock_settings_are_valid(const dock_settings_t *settings);
  * ones: a dock with a corrupt flash still lights up. */
 void dock_init(dock_t *dock, const dock_settings_t *settings);
 
-/* A camera frame, or a camera fault: frame NULL or without bytes.  A fault, or a
- * frame that is not valid, is counted and changes no colour. */
+/* A camera frame, or a camera fault: frame NULL or without bytes.  A fault, or
+ * a frame that is not valid, is counted and changes no colour. */
 void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms);
 
 /* PWM duties R, G, B, 0..LED_FULL, with correction, limit and polarity. */

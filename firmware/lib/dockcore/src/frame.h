@@ -12,10 +12,11 @@ typedef enum {
 } frame_format_t;
 
 typedef struct {
-    const uint8_t *bytes; /* rows from the top, no padding; RGB565: even address */
-    size_t length;        /* bytes behind `bytes` */
-    uint16_t width;       /* pixels, 1..METHOD_MAX_FRAME_WIDTH */
-    uint16_t height;      /* pixels, 1..METHOD_MAX_FRAME_HEIGHT */
+    const uint8_t
+        *bytes;      /* rows from the top, no padding; RGB565: even address */
+    size_t length;   /* bytes behind `bytes` */
+    uint16_t width;  /* pixels, 1..METHOD_MAX_FRAME_WIDTH */
+    uint16_t height; /* pixels, 1..METHOD_MAX_FRAME_HEIGHT */
     frame_format_t format;
 } frame_t;
 

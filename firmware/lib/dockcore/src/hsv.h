@@ -42,9 +42,9 @@ static inline hsv_t hsv_with_range(uint32_t red, uint32_t green, uint32_t blue,
         hue += (int32_t)range;
     hsv_t hsv;
     hsv.hue = (uint16_t)hue;
-    hsv.saturation =
-        (uint8_t)((chroma * METHOD_SATURATION_DIVISION[value] + (uint32_t)half) >>
-                  METHOD_HSV_SHIFT);
+    hsv.saturation = (uint8_t)((chroma * METHOD_SATURATION_DIVISION[value] +
+                                (uint32_t)half) >>
+                               METHOD_HSV_SHIFT);
     hsv.value = (uint8_t)value;
     hsv.chroma = (uint8_t)chroma;
     return hsv;

@@ -51,7 +51,8 @@ void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings)
     for (int i = 0; i < 3; i++) {
         const uint32_t mixed = mix(settings->matrix + 3 * i, light);
         const uint32_t limited = (mixed * settings->limit + 127) / 255;
-        const uint32_t scaled = (limited * LED_FULL + UINT16_MAX / 2) / UINT16_MAX;
+        const uint32_t scaled =
+            (limited * LED_FULL + UINT16_MAX / 2) / UINT16_MAX;
         duty[i] = with_polarity(scaled, settings);
     }
 }

@@ -7,13 +7,15 @@
 
 #include "method.h"
 
-#define LED_FULL (1u << METHOD_PWM_BITS) /* duty of a channel that is solid on */
+#define LED_FULL \
+    (1u << METHOD_PWM_BITS) /* duty of a channel that is solid on */
 
 typedef struct {
     int16_t offset[3]; /* added to the 8-bit colour, R G B, -255..255 (paper) */
-    int16_t matrix[9]; /* rows R G B, on linear light, METHOD_MATRIX_UNIT = 1.0 */
-    uint8_t gamma;     /* index of the decoding exponent, < METHOD_GAMMA_COUNT */
-    uint8_t limit;     /* brightness, 255: all */
+    int16_t
+        matrix[9]; /* rows R G B, on linear light, METHOD_MATRIX_UNIT = 1.0 */
+    uint8_t gamma; /* index of the decoding exponent, < METHOD_GAMMA_COUNT */
+    uint8_t limit; /* brightness, 255: all */
     bool common_anode; /* the pin pulls the LED's cathode low: duty inverted */
 } led_settings_t;
 

@@ -4,10 +4,6 @@
 
 #define WIDTH METHOD_WORKING_WIDTH
 
-/* Red and blue of a packed pixel: sums of 16 values fit beside each other. */
-#define RED_BLUE UINT32_C(0x3FF003FF)
-#define HALVES (UINT32_C(8) << PIXEL_RED_SHIFT | 8)
-
 /* left + 2 * here + right of a row, all three channels at once: at most 1020,
  * which fits the ten bits that each has. */
 static void blur_row(uint32_t *out, const uint32_t *row)
@@ -22,20 +18,21 @@ static void blur_row(uint32_t *out, const uint32_t *row)
     out[WIDTH - 1] = left + 3 * here;
 }
 
-/* The same down the columns, and the division by 16. */
-static void blur_columns(uint32_t *out, const uint32_t *above,
-                         const uint32_t *here, const uint32_t *below)
+/* Half of a + b, rounded down, in each ten-bit field. */
+static inline uint32_t half_sum(uint32_t a, uint32_t b)
 {
-    for (uint32_t x = 0; x < WIDTH; x++) {
-        const uint32_t a = above[x], h = here[x], b = below[x];
-        const uint32_t red_blue =
-            (a & RED_BLUE) + 2 * (h & RED_BLUE) + (b & RED_BLUE) + HALVES;
-        const uint32_t green = (a >> PIXEL_GREEN_SHIFT & 0x3FF) +
-                               2 * (h >> PIXEL_GREEN_SHIFT & 0x3FF) +
-                               (b >> PIXEL_GREEN_SHIFT & 0x3FF) + 8;
-        out[x] = (red_blue >> 4 & UINT32_C(0x0FF000FF)) |
-                 green >> 4 << PIXEL_GREEN_SHIFT;
-    }
+    return (a & b) + (((a ^ b) & UINT32_C(0x3FEFFBFE)) >> 1);
+}
+
+/* (above + 2 * here + below + 8) / 16, rounded down, in each field.  Halving
+ * on the way keeps ten bits enough and, as floor(floor(x) / n) = floor(x / n),
+ * changes nothing. */
+static inline uint32_t blur_column(uint32_t above, uint32_t here,
+                                   uint32_t below)
+{
+    const uint32_t two = pixel_pack(2, 2, 2);
+    const uint32_t quarter = half_sum(half_sum(above, below), here);
+    return (quarter + two) >> 2 & pixel_pack(0xFF, 0xFF, 0xFF);
 }
 
 void working_image_smooth(working_image_t *image)
@@ -50,7 +47,8 @@ void working_image_smooth(working_image_t *image)
             blur_row(below, row + WIDTH);
         else
             memcpy(below, here, sizeof lines[0]);
-        blur_columns(row, above, here, below);
+        for (uint32_t x = 0; x < WIDTH; x++)
+            row[x] = blur_column(above[x], here[x], below[x]);
         uint32_t *const oldest = above;
         above = here;
         here = below;

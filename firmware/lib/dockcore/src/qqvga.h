@@ -1,0 +1,15 @@
+/* The dock camera's own frames, 160 x 120 RGB565, averaged in a third of the
+ * instructions that a frame of any size takes; the same bits. */
+#ifndef QQVGA_H
+#define QQVGA_H
+
+#include <stdbool.h>
+
+#include "working_image.h"
+
+/* True where every cell is 2 x 2 RGB565 pixels at a word's address. */
+bool qqvga_is_rgb565(const frame_t *frame);
+
+void qqvga_average(working_image_t *image, const frame_t *frame);
+
+#endif

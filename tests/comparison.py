@@ -6,7 +6,6 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from chromadock_firmware import decide
 
 from chromadock.colour.background import background_colour
 from chromadock.colour.marker import marker_hue
@@ -17,6 +16,7 @@ from chromadock.colour.working_image import (
     unpack_rgb565,
     working_image,
 )
+from chromadock_firmware import decide
 
 
 def numpy_decision(data: bytes, width: int, height: int, fmt: str, mapping: str) -> dict[str, Any]:

@@ -46,10 +46,11 @@ class _Loader(yaml.SafeLoader):
     """SafeLoader that also knows OpenCV's matrix tag."""
 
 
-_Loader.add_constructor(
-    "tag:yaml.org,2002:opencv-matrix",
-    lambda loader, node: loader.construct_mapping(node, deep=True),
-)
+def _opencv_matrix(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
+    return loader.construct_mapping(node, deep=True)
+
+
+_Loader.add_constructor("tag:yaml.org,2002:opencv-matrix", _opencv_matrix)
 
 
 def read_camera_file(
@@ -90,13 +91,20 @@ def _load(path: Path) -> dict[str, Any]:
         content = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as error:
         raise ChromadockError(
-            f"{path}: not valid YAML ({one_line(error)}): export the calibration again"
+            f"{path}: not valid YAML ({_problem(error)}): export the calibration again"
         ) from None
     if not isinstance(content, dict):
         raise ChromadockError(
             f"{path}: no keys in it: give the camera_info YAML of your calibration"
         )
     return content
+
+
+def _problem(error: yaml.YAMLError) -> str:
+    """PyYAML's words without its picture of the place, and with the line."""
+    mark = getattr(error, "problem_mark", None)
+    words = one_line(getattr(error, "problem", None) or error, 80)
+    return words if mark is None else f"line {mark.line + 1}: {words}"
 
 
 def _explain(error: ValidationError) -> str:

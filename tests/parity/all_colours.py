@@ -10,10 +10,10 @@ import sys
 
 import cv2
 import numpy as np
-from chromadock_firmware import hsv_from_rgb as c_hsv
 
 from chromadock.colour.background import grey_bins
 from chromadock.colour.hsv import hsv_from_rgb as numpy_hsv
+from chromadock_firmware import hsv_from_rgb as c_hsv
 
 CHUNK = 1 << 20
 CODES = {180: cv2.COLOR_RGB2HSV, 256: cv2.COLOR_RGB2HSV_FULL}

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from chromadock_firmware import Dock, Settings, ffi, lib
 from comparison import assert_same, c_decision, numpy_decision
 
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.colour.marker import RollingHue
+from chromadock_firmware import Dock, Settings, ffi, lib
 
 
 @pytest.mark.parametrize("decision", [numpy_decision, c_decision])
@@ -30,9 +30,7 @@ def test_every_intermediate_value_of_the_golden_frames(golden: dict[str, Any], d
             **background,
             "marker_hue": record["marker_hue"],
         }
-        got = decision(
-            data, record["width"], record["height"], record["format"], record["mapping"]
-        )
+        got = decision(data, record["width"], record["height"], record["format"], record["mapping"])
         assert_same({name: got[name] for name in expected}, expected, record["name"])
         assert set(got) == set(expected)
         colour = record["background"]

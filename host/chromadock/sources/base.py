@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from types import TracebackType
 
 import numpy as np
@@ -13,12 +14,12 @@ from numpy.typing import NDArray
 DEFAULT_FPS = 30.0
 """Frames a second of pictures, and of cameras and videos that do not tell."""
 
-Report = Callable[[str], None]
+OnSkip = Callable[[str], None]
 """Takes one line about a picture that was skipped."""
 
 
 def ignore(_line: str) -> None:
-    """The ``Report`` of a caller who only looks at ``Source.errors``."""
+    """The ``OnSkip`` of a caller who only looks at ``Source.errors``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +46,15 @@ class Source(ABC):
         True for cameras and streams, which have no end of their own.
     errors
         Pictures skipped so far because they could not be read.
+    places
+        Files it reads, and folders of pictures; an output must not go there.
     """
 
     count: int | None = None
     fps: float = DEFAULT_FPS
     live: bool = False
     errors: int = 0
+    places: frozenset[Path] = frozenset()
 
     @abstractmethod
     def __iter__(self) -> Iterator[Frame]:

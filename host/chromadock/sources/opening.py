@@ -9,14 +9,15 @@ import stat
 from pathlib import Path
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import DEFAULT_FPS, Report, Source, ignore
-from chromadock.sources.capture import Live, VideoFile, open_live
+from chromadock.sources.base import DEFAULT_FPS, OnSkip, Source, ignore
+from chromadock.sources.live import open_camera, open_pipeline, open_url
 from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture, natural_key
+from chromadock.sources.video import open_video
 
 _KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
 
 
-def open_source(text: str, fps: float = DEFAULT_FPS, report: Report = ignore) -> Source:
+def open_source(text: str, fps: float = DEFAULT_FPS, on_skip: OnSkip = ignore) -> Source:
     """Open what ``text`` names.
 
     Parameters
@@ -27,7 +28,7 @@ def open_source(text: str, fps: float = DEFAULT_FPS, report: Report = ignore) ->
         exists as a file wins over the other readings, except for bare camera indices.
     fps
         Frames a second of a folder or glob of pictures.
-    report
+    on_skip
         Called with one line for each picture that is skipped.
 
     Raises
@@ -38,33 +39,33 @@ def open_source(text: str, fps: float = DEFAULT_FPS, report: Report = ignore) ->
     if not (0 < fps < float("inf")):
         raise ChromadockError(f"--fps is {fps:g}: it must be a positive number")
     if text.isascii() and text.isdigit():
-        return open_live(int(text))
+        return open_camera(int(text))
     path = Path(text)
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
-        return _not_a_path(text, fps, report, error)
+        return _not_a_path(text, fps, on_skip, error)
     if stat.S_ISDIR(mode):
-        return _folder(path, fps, report)
+        return _folder(path, fps, on_skip)
     if stat.S_ISCHR(mode):
-        return open_live(text)
-    return _file(path, fps, report)
+        return open_camera(text)
+    return _file(path, fps, on_skip)
 
 
-def _not_a_path(text: str, fps: float, report: Report, error: Exception) -> Source:
+def _not_a_path(text: str, fps: float, on_skip: OnSkip, error: Exception) -> Source:
     """Pipelines, URLs and globs; anything else was meant as a path."""
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
-        return open_live(text)
+        return open_url(text)
     if "!" in text:
-        return open_live(text)
+        return open_pipeline(text)
     if glob.has_magic(text):
-        return _glob(text, fps, report)
+        return _glob(text, fps, on_skip)
     if isinstance(error, PermissionError):
         raise ChromadockError(f"{text}: permission denied: allow reading it")
     raise ChromadockError(f"{text}: no such file or folder: {_KINDS}")
 
 
-def _file(path: Path, fps: float, report: Report) -> Source:
+def _file(path: Path, fps: float, on_skip: OnSkip) -> Source:
     try:
         with path.open("rb") as file:
             empty = not file.read(1)
@@ -75,11 +76,11 @@ def _file(path: Path, fps: float, report: Report) -> Source:
     if empty:
         raise ChromadockError(f"{path}: the file is empty: copy it again")
     if is_picture(path):
-        return Pictures([path], [path.name], fps, report, single=True)
-    return VideoFile(path)
+        return Pictures([path], [path.name], fps, on_skip, single=True)
+    return open_video(path)
 
 
-def _folder(path: Path, fps: float, report: Report) -> Source:
+def _folder(path: Path, fps: float, on_skip: OnSkip) -> Source:
     try:
         inside = [p for p in path.iterdir() if _is_visible_image(p)]
     except OSError as error:
@@ -90,17 +91,17 @@ def _folder(path: Path, fps: float, report: Report) -> Source:
     if not inside:
         suffixes = " ".join(sorted(IMAGE_SUFFIXES))
         raise ChromadockError(f"{path}: no pictures in this folder: it needs some of {suffixes}")
-    return Pictures(inside, [p.name for p in inside], fps, report)
+    return Pictures(inside, [p.name for p in inside], fps, on_skip)
 
 
-def _glob(pattern: str, fps: float, report: Report) -> Source:
-    found = [Path(p) for p in glob.glob(pattern, recursive=True)]
+def _glob(pattern: str, fps: float, on_skip: OnSkip) -> Source:
+    found = [Path(p) for p in glob.glob(pattern, recursive=True)]  # noqa: PTH207 - absolute, too
     found = [p for p in found if _is_visible_image(p)]
     if not found:
         raise ChromadockError(f"{pattern}: no picture matches: check the pattern and the folder")
     found.sort(key=lambda p: natural_key(str(p)))
     above = os.path.commonpath([p.parent for p in found])
-    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, report)
+    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, on_skip)
 
 
 def _is_visible_image(path: Path) -> bool:
@@ -108,6 +109,3 @@ def _is_visible_image(path: Path) -> bool:
     return (
         path.suffix.lower() in IMAGE_SUFFIXES and not path.name.startswith(".") and path.is_file()
     )
-
-
-__all__ = ["Live", "open_source"]

@@ -9,7 +9,7 @@ from pathlib import Path
 from PIL import Image, UnidentifiedImageError
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import Frame, Report, Source
+from chromadock.sources.base import Frame, OnSkip, Source
 from chromadock.sources.still import read_still
 
 IMAGE_SUFFIXES = frozenset(
@@ -29,14 +29,15 @@ class Pictures(Source):
         paths: Sequence[Path],
         names: Sequence[str],
         fps: float,
-        report: Report,
+        on_skip: OnSkip,
         single: bool = False,
     ) -> None:
         self.count = len(paths)
         self.fps = fps
+        self.places = frozenset(paths) | frozenset(path.parent for path in paths)
         self._paths = paths
         self._names = names
-        self._report = report
+        self._on_skip = on_skip
         self._single = single
 
     def __iter__(self) -> Iterator[Frame]:
@@ -48,7 +49,7 @@ class Pictures(Source):
                 if self._single:
                     raise
                 self.errors += 1
-                self._report(f"{error} (skipped)")
+                self._on_skip(f"{error} (skipped)")
                 continue
             yield Frame(image, name, index, index / self.fps)
 

@@ -1,0 +1,5 @@
+"""``python -m chromadock`` is the ``chromadock`` command."""
+
+from chromadock.cli import main
+
+main()

@@ -1,0 +1,124 @@
+"""What the user sees of a run: a line a frame, a progress bar, a summary."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+from chromadock.detection import Detection
+from chromadock.output import json_line
+from chromadock.sources import Frame
+from chromadock.text import plural
+
+_LONG = 20
+"""Sources with fewer frames are done before a bar could be read."""
+
+_HEADER = "   frame   time s  state       range m        x        y        z  error px  file"
+
+
+class Report:
+    """Results to standard output, everything else to standard error.
+
+    With ``json`` a line is one object, else a row of a table.  ``calibrated`` says that
+    the distances rest on a calibration.
+    """
+
+    def __init__(self, json: bool, calibrated: bool) -> None:
+        self._json = json
+        self._calibrated = calibrated
+        self._bar: Progress | None = None
+        self._frames = 0
+        self._found = 0
+        self._skipped = 0
+
+    def frame(self, frame: Frame, detection: Detection) -> None:
+        """Tell of one frame."""
+        if detection.pose is not None and not self._calibrated:
+            self._calibrated = True  # once is enough
+            self._aside("warning: no --camera: a usual lens is assumed, so distances are rough")
+        if self._json:
+            record = {"file": frame.name, "frame": frame.index, "time_s": round(frame.time_s, 6)}
+            self._print(json_line({**record, **detection.to_dict()}))
+        else:
+            if not self._frames:
+                self._print(_HEADER)
+            self._print(_row(frame, detection))
+        self._frames += 1
+        self._found += detection.found
+        if self._bar is not None:
+            self._bar.advance(self._bar.task_ids[0])
+
+    def skipped(self, line: str) -> None:
+        """Tell of a picture that could not be read."""
+        self._skipped += 1
+        self._aside(f"error: {line}")
+        if self._bar is not None:
+            self._bar.advance(self._bar.task_ids[0])
+
+    def summary(self) -> None:
+        """The last line."""
+        words = f"{plural(self._frames, 'frame')}, {self._found} found, {self._skipped} skipped"
+        print(words, file=sys.stderr if self._json else sys.stdout, flush=True)
+
+    @contextmanager
+    def progress(self, count: int | None) -> Iterator[None]:
+        """A bar on standard error, if that is a terminal and the source long."""
+        if not sys.stderr.isatty() or (count is not None and count < _LONG):
+            yield
+            return
+        columns = (
+            TextColumn("detecting"), BarColumn(), MofNCompleteColumn(),
+            TimeElapsedColumn(), TimeRemainingColumn(),
+        )  # fmt: skip
+        bar = Progress(
+            *columns, console=Console(stderr=True), transient=True,
+            redirect_stdout=False, redirect_stderr=False,
+        )  # fmt: skip
+        bar.add_task("", total=count)
+        with bar:
+            self._bar = bar
+            try:
+                yield
+            finally:
+                self._bar = None
+
+    def _print(self, line: str) -> None:
+        """A line of results.  Above the bar, where both are on the screen."""
+        if self._bar is not None and sys.stdout.isatty():
+            self._above_bar(line)
+        else:
+            print(line, flush=True)
+
+    def _aside(self, line: str) -> None:
+        line = f"chromadock: {line}"
+        if self._bar is not None:
+            self._above_bar(line)
+        else:
+            print(line, file=sys.stderr, flush=True)
+
+    def _above_bar(self, line: str) -> None:
+        assert self._bar is not None
+        self._bar.console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def _row(frame: Frame, detection: Detection) -> str:
+    """One frame in the columns of ``_HEADER``; metres in the camera frame."""
+    start = f"{frame.index:8d} {frame.time_s:8.3f}  {detection.state.replace('_', ' '):<10}"
+    pose = detection.pose
+    if pose is None:
+        return f"{start}{'-':>9}{'-':>9}{'-':>9}{'-':>9}{'-':>10}  {frame.name}"
+    x, y, z = pose.t
+    away = float(np.linalg.norm(pose.t))
+    return f"{start}{away:9.3f}{x:9.3f}{y:9.3f}{z:9.3f}{pose.reprojection_px:10.2f}  {frame.name}"

@@ -1,0 +1,82 @@
+"""What is kept of each frame of the demo, and how far it is from the truth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from chromadock.colour.hsv import rgb_from_hsv
+from chromadock.demo.loop import Step
+from chromadock.demo.scene import TruePose
+from chromadock.detection import Detection
+from chromadock.method import HUE_RANGE
+from chromadock.rotation import matrix_from_quaternion, quaternion_from_matrix
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One frame without its pixels."""
+
+    index: int
+    time_s: float
+    detection: Detection
+    dock_hue_deg: float
+    truth: TruePose
+
+    @classmethod
+    def of(cls, step: Step) -> Record:
+        """The part of a step worth keeping."""
+        return cls(step.index, step.time_s, step.detection, step.dock_hue_deg, step.truth)
+
+    @property
+    def dock_rgb(self) -> tuple[int, int, int]:
+        """The pure colour that the dock decided on."""
+        return rgb_from_hsv(round(self.dock_hue_deg * HUE_RANGE / 360) % HUE_RANGE, 255, 255)
+
+    @property
+    def true_range_m(self) -> float:
+        """Distance of the dock from the camera."""
+        return float(np.linalg.norm(self.truth.t))
+
+    @property
+    def range_m(self) -> float | None:
+        """The same as measured; None where the dock was not found."""
+        pose = self.detection.pose
+        return None if pose is None else float(np.linalg.norm(pose.t))
+
+    @property
+    def position_error_m(self) -> float | None:
+        """Distance between measured and true position."""
+        pose = self.detection.pose
+        return None if pose is None else float(np.linalg.norm(np.array(pose.t) - self.truth.t))
+
+    @property
+    def attitude_error_deg(self) -> float | None:
+        """Angle between measured and true attitude."""
+        pose = self.detection.pose
+        if pose is None:
+            return None
+        difference = matrix_from_quaternion(pose.q_wxyz) @ self.truth.R.T
+        cosine = (np.trace(difference) - 1) / 2
+        return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+
+    @property
+    def hue_disagreement_deg(self) -> float:
+        """How far dock and vehicle are apart on the marker's hue."""
+        apart = abs(self.dock_hue_deg - self.detection.marker.hue_deg) % 360
+        return min(apart, 360 - apart)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The detection's JSON object with the dock's hue and the true pose beside it."""
+        return {
+            "frame": self.index,
+            "time_s": round(self.time_s, 3),
+            **self.detection.to_dict(),
+            "dock": {"hue_deg": round(self.dock_hue_deg, 2)},
+            "truth": {
+                "t": [round(float(v), 4) for v in self.truth.t],
+                "q_wxyz": [round(v, 6) for v in quaternion_from_matrix(self.truth.R)],
+            },
+        }

@@ -1,0 +1,165 @@
+"""Where the markers sit on the dock.
+
+Dock frame: origin at the centre of the markers' rectangle, x right, y down, z away from
+an approaching vehicle, as that vehicle sees it; metres.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from importlib import resources
+from itertools import combinations
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from chromadock.errors import ChromadockError
+from chromadock.text import one_line
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+DEFAULT_FILE = "default_dock.toml"
+"""Packaged; it is also the example to copy."""
+
+MIN_MARKERS = 3
+MIN_SPACING_M = 0.001
+"""Markers closer than their LEDs are wide are a slip of the pen."""
+MAX_EXTENT_M = 100.0
+"""A larger number is surely in millimetres."""
+
+
+@dataclass(frozen=True, eq=False)
+class DockGeometry:
+    """Named markers of a dock.
+
+    Parameters
+    ----------
+    names
+        One name a marker, all different.
+    points
+        Nx3 float64, metres, dock frame, in the order of ``names``.
+    source
+        What messages call this dock: its file.
+
+    Raises
+    ------
+    ChromadockError
+        Fewer than three markers, a repeated name, a number that is not finite, markers
+        that coincide or all lie on one line, a position that cannot be in metres.
+    """
+
+    names: tuple[str, ...]
+    points: NDArray[np.float64]
+    source: str = "dock"
+
+    def __post_init__(self) -> None:
+        points = np.array(self.points, dtype=np.float64)
+        points.setflags(write=False)
+        object.__setattr__(self, "names", tuple(self.names))
+        object.__setattr__(self, "points", points)
+        fault = _fault(self.names, points)
+        if fault:
+            raise ChromadockError(f"{self.source}: {fault}")
+
+    @classmethod
+    def default(cls) -> DockGeometry:
+        """The original dock: a rectangle of 0.890 m x 0.127 m, named by its corners."""
+        text = resources.files("chromadock").joinpath(DEFAULT_FILE).read_text(encoding="utf-8")
+        return _parsed(text, DEFAULT_FILE)
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> DockGeometry:
+        """The dock in a TOML file laid out like ``default_dock.toml``.
+
+        Raises
+        ------
+        ChromadockError
+            One line with the file, what is wrong and the mend.
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except OSError as error:
+            raise ChromadockError(
+                f"{path}: cannot read the dock file ({error.strerror}): "
+                "give a TOML file with one [[marker]] for each marker"
+            ) from None
+        except UnicodeDecodeError:
+            raise ChromadockError(
+                f"{path}: not a text file: give a TOML file with one [[marker]] for each marker"
+            ) from None
+        return _parsed(text, str(path))
+
+
+class _Marker(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True)
+    name: Annotated[str, Field(min_length=1)]
+    position: Annotated[list[float], Field(min_length=3, max_length=3)]
+
+
+class _DockFile(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True)
+    marker: list[_Marker] = []
+
+
+def _parsed(text: str, source: str) -> DockGeometry:
+    try:
+        content = _DockFile.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise ChromadockError(
+            f"{source}: not valid TOML ({one_line(error)}): correct that line"
+        ) from None
+    except ValidationError as error:
+        raise ChromadockError(f"{source}: {_explain(error)}") from None
+    points = np.array([m.position for m in content.marker], dtype=np.float64).reshape(-1, 3)
+    return DockGeometry(tuple(m.name for m in content.marker), points, source)
+
+
+def _explain(error: ValidationError) -> str:
+    """The first fault of a dock file in one line."""
+    fault: Any = error.errors()[0]
+    place = fault["loc"]
+    keys = [str(part) for part in place if not isinstance(part, int)]
+    index = next((part + 1 for part in place if isinstance(part, int)), None)
+    key = keys[-1]
+    where = f"marker {index}: {key}" if index and len(keys) > 1 else key
+    kind = fault["type"]
+    if kind == "extra_forbidden":
+        known = "name and position" if index else "[[marker]]"
+        return f"unknown key {where}: only {known} may stand there"
+    if kind == "missing":
+        return f"{where} is missing: each [[marker]] has a name and a position"
+    if key == "name":
+        return f'{where} is {fault["input"]!r}: write a text such as name = "top_left"'
+    if key == "position":
+        return f"{where} must be three numbers in metres: position = [x, y, z]"
+    return f"{where} must be one or more [[marker]] with a name and a position"
+
+
+def _fault(names: tuple[str, ...], points: NDArray[np.float64]) -> str | None:
+    """What makes these markers impossible as a dock, or None."""
+    if points.shape != (len(names), 3):
+        return f"{len(names)} names but points of shape {points.shape}: give one x, y, z a name"
+    if len(names) < MIN_MARKERS:
+        return f"{len(names)} markers: a pose needs at least {MIN_MARKERS}, so add [[marker]]s"
+    for name in names:
+        if names.count(name) > 1:
+            return f"the name {name} is used {names.count(name)} times: give each marker its own"
+    for name, point in zip(names, points, strict=True):
+        if not np.isfinite(point).all():
+            return f"marker {name} has a position that is not finite: give metres"
+        if np.abs(point).max() > MAX_EXTENT_M:
+            return f"marker {name} is {np.abs(point).max():g} m from the centre: give metres"
+    for (name_a, a), (name_b, b) in combinations(zip(names, points, strict=True), 2):
+        if np.linalg.norm(a - b) < MIN_SPACING_M:
+            return f"markers {name_a} and {name_b} are at the same place: correct one of them"
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if spread[1] < 1e-3 * spread[0]:
+        return "all markers lie on one line, which gives no pose: move one of them off it"
+    return None

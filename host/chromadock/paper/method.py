@@ -1,0 +1,88 @@
+"""The paper's detector from the frame to the pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.camera import CameraModel
+from chromadock.detection import Blob, Point, Pose
+from chromadock.dock import DockGeometry
+from chromadock.paper.blobs import Spot, find_spots
+from chromadock.paper.constellation import CORNERS, Rectangle, corners, four_blobs, right_triangles
+from chromadock.paper.mask import colour_mask, foreground
+from chromadock.pose import epnp
+from chromadock.stopwatch import Stopwatch
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What the method made of one frame; markers and pose are None if no dock was found."""
+
+    passed_fraction: float
+    blobs: tuple[Blob, ...]
+    markers: dict[str, Point] | None
+    pose: Pose | None
+
+
+class PaperMethod:
+    """Mask, Laplacian of Gaussian, right triangles, corners, EPnP."""
+
+    def __init__(self, dock: DockGeometry) -> None:
+        self._dock = dock
+        self._rectangle = Rectangle.of(dock)
+        self.mask: NDArray[np.bool_] = np.zeros((0, 0), np.bool_)
+
+    def find(
+        self,
+        frame_bgr: NDArray[np.uint8],
+        background_bin: int,
+        observed: tuple[int, int, int],
+        camera: CameraModel,
+        watch: Stopwatch,
+    ) -> Found:
+        """Look for the dock in a (H, W, 3) uint8 BGR frame."""
+        mask = colour_mask(frame_bgr, observed) & foreground(frame_bgr, background_bin)
+        self.mask = mask.astype(np.bool_)
+        watch.lap("mask")
+
+        spots = find_spots(mask)
+        watch.lap("blobs")
+
+        points = np.array([(s.x, s.y) for s in spots], dtype=np.float64).reshape(-1, 2)
+        triangles = right_triangles(points, self._rectangle.ratio)
+        chosen = four_blobs(triangles)
+        indices = None if chosen is None else self._by_corner(points, list(chosen))
+        watch.lap("constellation")
+
+        pose = None
+        if indices is not None:
+            pose = epnp(self._dock.points, points[indices], camera)
+        watch.lap("pose")
+
+        markers = None
+        if pose is not None and indices is not None:
+            markers = {
+                name: (float(points[i, 0]), float(points[i, 1]))
+                for name, i in zip(self._dock.names, indices, strict=True)
+            }
+        return Found(
+            passed_fraction=float(np.count_nonzero(mask)) / mask.size,
+            blobs=_blobs(spots, set(np.argwhere(np.isfinite(triangles)).ravel().tolist())),
+            markers=markers,
+            pose=pose,
+        )
+
+    def _by_corner(self, points: NDArray[np.float64], chosen: list[int]) -> list[int] | None:
+        """The blob of each dock marker, in the geometry's order."""
+        seen = corners(points[chosen])
+        if seen is None:
+            return None
+        blob_of = {self._rectangle.corner[name]: chosen[seen[name]] for name in CORNERS}
+        return [blob_of[marker] for marker in range(4)]
+
+
+def _blobs(spots: list[Spot], accepted: set[int]) -> tuple[Blob, ...]:
+    return tuple(Blob(s.x, s.y, s.radius, i in accepted) for i, s in enumerate(spots))

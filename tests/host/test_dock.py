@@ -1,0 +1,118 @@
+"""DockGeometry: the default dock, and dock files that are wrong."""
+
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from chromadock.dock import DockGeometry
+from chromadock.errors import ChromadockError
+
+THREE = {"a": "[0, 0, 0]", "b": "[0.5, 0, 0]", "c": "[0, 0.25, 0.1]"}
+
+
+def dock_text(markers):
+    return "\n".join(f'[[marker]]\nname = "{n}"\nposition = {p}' for n, p in markers)
+
+
+@pytest.fixture
+def load(tmp_path):
+    """Write a dock file and load it."""
+
+    def load_text(text):
+        path = tmp_path / "dock.toml"
+        path.write_text(text)
+        return DockGeometry.from_toml(path)
+
+    return load_text
+
+
+def test_the_default_dock_is_a_centred_rectangle_of_0890_by_0127_metres():
+    dock = DockGeometry.default()
+    assert dock.names == ("top_left", "top_right", "bottom_left", "bottom_right")
+    assert dock.points.dtype == np.float64
+    assert np.allclose(np.ptp(dock.points, axis=0), (0.890, 0.127, 0))
+    assert np.allclose(dock.points.mean(axis=0), 0)
+    where = dict(zip(dock.names, dock.points, strict=True))
+    # x right and y down, as the vehicle sees it.
+    assert where["top_left"][0] < 0
+    assert where["top_left"][1] < 0
+    assert where["bottom_right"][0] > 0
+    assert where["bottom_right"][1] > 0
+
+
+def test_the_packaged_file_is_an_example_that_loads(load):
+    text = resources.files("chromadock").joinpath("default_dock.toml").read_text()
+    assert np.array_equal(load(text).points, DockGeometry.default().points)
+
+
+def test_three_markers_out_of_plane_and_whole_numbers_are_a_dock(load):
+    dock = load(dock_text(THREE.items()))
+    assert dock.names == ("a", "b", "c")
+    assert dock.points.tolist() == [[0, 0, 0], [0.5, 0, 0], [0, 0.25, 0.1]]
+
+
+@pytest.mark.parametrize(
+    ("markers", "says"),
+    [
+        ([], "0 markers"),
+        ([("a", "[0, 0, 0]"), ("b", "[1, 0, 0]")], "2 markers: a pose needs at least 3"),
+        ([*THREE.items(), ("b", "[1, 1, 0]")], "the name b is used 2 times"),
+        ([*THREE.items(), ("d", "[nan, 1, 0]")], "marker d has a position that is not finite"),
+        ([*THREE.items(), ("d", "[0, inf, 0]")], "marker d has a position that is not finite"),
+        ([*THREE.items(), ("d", "[0, 0, 0]")], "markers a and d are at the same place"),
+        ([*THREE.items(), ("d", "[0, 445, 0]")], "marker d is 445 m from the centre: give metres"),
+        ([*THREE.items(), ("d", "[0, 1]")], "marker 4: position must be three numbers"),
+        ([*THREE.items(), ("d", '[0, 1, "x"]')], "marker 4: position must be three numbers"),
+        ([*THREE.items(), ("d", "true")], "marker 4: position must be three numbers"),
+        ([*THREE.items(), ("", "[0, 1, 0]")], "marker 4: name is ''"),
+        (
+            [("a", "[0, 0, 0]"), ("b", "[0.5, 0, 0]"), ("c", "[1, 0, 0]")],
+            "all markers lie on one line",
+        ),
+    ],
+)
+def test_markers_that_make_no_dock_are_refused_in_one_line(load, markers, says):
+    with pytest.raises(ChromadockError) as raised:
+        load(dock_text(markers))
+    line = str(raised.value)
+    assert "dock.toml: " in line
+    assert says in line
+    assert "\n" not in line
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[[marker]\n", "not valid TOML"),
+        ("units = 'm'\n" + dock_text(THREE.items()), "unknown key units"),
+        (dock_text(THREE.items()) + "\ncolour = 'red'", "unknown key marker 3: colour"),
+        ("[[marker]]\nposition = [0, 0, 0]", "marker 1: name is missing"),
+        ("[[marker]]\nname = 'a'", "marker 1: position is missing"),
+        ("[[marker]]\nname = 7\nposition = [0, 0, 0]", "marker 1: name is 7"),
+        ("marker = 3", "marker must be one or more [[marker]]"),
+    ],
+)
+def test_a_file_of_another_layout_is_refused_in_one_line(load, text, says):
+    with pytest.raises(ChromadockError) as raised:
+        load(text)
+    line = str(raised.value)
+    assert says in line
+    assert "\n" not in line
+
+
+def test_a_missing_dock_file_is_refused(tmp_path):
+    with pytest.raises(ChromadockError, match=r"none\.toml: cannot read .*No such file"):
+        DockGeometry.from_toml(tmp_path / "none.toml")
+
+
+def test_a_dock_made_in_python_is_checked_too():
+    with pytest.raises(ChromadockError, match="3 names but points of shape"):
+        DockGeometry(("a", "b", "c"), np.zeros((4, 3)))
+
+
+def test_a_dock_cannot_be_changed_behind_its_back():
+    dock = DockGeometry.default()
+    with pytest.raises(ValueError, match="read-only"):
+        dock.points[0, 0] = 1
+    assert np.array_equal(dock.points, DockGeometry.default().points)

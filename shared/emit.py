@@ -31,7 +31,8 @@ def constants(m: Method) -> dict[str, int]:
     mappings = list(m["marker"]["mappings"])
     return {
         "HUE_RANGE": m["hue"]["range"],
-        "HSV_SHIFT": m["hue"]["shift"],
+        "HUE_SHIFT": m["hue"]["shift"],
+        "OPENCV_SHIFT": m["hue"]["opencv_shift"],
         "TRIG_UNIT": m["hue"]["trig_unit"],
         "ATAN_STEPS": m["hue"]["atan_steps"],
         "WORKING_WIDTH": work["width"],

@@ -67,7 +67,7 @@ def flat(r: float, g: float, b: float) -> Paint:
 
 def red_wrap(u: float, v: float) -> tuple[float, float, float]:
     """Hues a little above and a little below red: a linear mean would say cyan."""
-    return (200, 30, 80) if u < 0.5 else (200, 80, 30)
+    return (150, 40, 60) if u < 0.5 else (150, 60, 40)
 
 
 def equal_bins(u: float, v: float) -> tuple[float, float, float]:
@@ -108,6 +108,11 @@ def frames() -> list[tuple[str, str, int, int, str, bytes]]:
         ("equal_bins", RGB888, 80, 60, "ternary", equal_bins, 0),
         ("opposite_hues", RGB888, 80, 60, "ternary", opposite, 0),
         ("every_hue", RGB888, 80, 60, "ternary", every_hue, 0),
+        ("ties_of_six", RGB888, 160, 180, "ternary", pool, 40),
+        ("saturation_26", RGB888, 1, 1, "ternary", flat(229, 255, 255), 0),
+        ("saturation_25", RGB888, 1, 1, "ternary", flat(230, 255, 255), 0),
+        ("value_16", RGB888, 1, 1, "complement", flat(4, 10, 16), 0),
+        ("value_15", RGB888, 1, 1, "complement", flat(4, 10, 15), 0),
     ]
     return [
         (name, fmt, w, h, mapping, paint(fmt, w, h, colour, noise, seed))
@@ -190,6 +195,7 @@ def led_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
         {**NEUTRAL_LED, "gamma": 3, "offset": [-40, 25, 60]},
         {**NEUTRAL_LED, "gamma": 1, "matrix": crosstalk, "common_anode": False},
         {**NEUTRAL_LED, "offset": [255, -255, 0], "limit": 0},
+        {**NEUTRAL_LED, "matrix": [120, 0, 7, 0, 90, 1, 0, 0, 33], "limit": 200},
         {**NEUTRAL_LED, "matrix": [32767] * 9, "common_anode": False},
         {**NEUTRAL_LED, "matrix": [-32768] * 9, "common_anode": False},
     ]

@@ -85,17 +85,19 @@ def hsv(m: Method, t: Tables, p: Pixel) -> tuple[int, int, int, int]:
     r, g, b = p
     value = max(p)
     chroma = value - min(p)
-    half = 1 << m["hue"]["shift"] - 1
+    shift, saturation_shift = m["hue"]["shift"], m["hue"]["opencv_shift"]
     if value == r:
         distance = g - b
     elif value == g:
         distance = b - r + 2 * chroma
     else:
         distance = r - g + 4 * chroma
-    hue = (distance * t["HUE_DIVISION"][chroma] + half) >> m["hue"]["shift"]
+    hue = (distance * t["HUE_DIVISION"][chroma] + (1 << shift - 1)) >> shift
     if hue < 0:
         hue += m["hue"]["range"]
-    saturation = (chroma * t["SATURATION_DIVISION"][value] + half) >> m["hue"]["shift"]
+    saturation = (
+        chroma * t["SATURATION_DIVISION"][value] + (1 << saturation_shift - 1)
+    ) >> saturation_shift
     return hue, saturation, value, chroma
 
 

@@ -8,15 +8,15 @@ from typing import Any
 Method = dict[str, Any]
 
 
-def hue_division(m: Method, turn: int) -> list[int]:
+def hue_division(turn: int, shift: int) -> list[int]:
     """``turn * 2^shift / (6 * chroma)``, rounded; 0 for chroma 0 (no hue)."""
-    unit = turn << m["hue"]["shift"]
+    unit = turn << shift
     return [0] + [(unit + 3 * d) // (6 * d) for d in range(1, 256)]
 
 
 def saturation_division(m: Method) -> list[int]:
     """``255 * 2^shift / value``, rounded; 0 for value 0 (black)."""
-    unit = 255 << m["hue"]["shift"]
+    unit = 255 << m["hue"]["opencv_shift"]
     return [0] + [(2 * unit + v) // (2 * v) for v in range(1, 256)]
 
 
@@ -39,11 +39,15 @@ def gamma(m: Method) -> list[int]:
 
 def all_tables(m: Method) -> dict[str, list[int]]:
     """Every table under its name in C and Python."""
+    hue = m["hue"]
     return {
-        "HUE_DIVISION": hue_division(m, m["hue"]["range"]),
+        "HUE_DIVISION": hue_division(hue["range"], hue["shift"]),
         "SATURATION_DIVISION": saturation_division(m),
         "SINE": sine(m),
         "ARCTANGENT": arctangent(m),
         "GAMMA": gamma(m),
-        **{f"HUE_DIVISION_{n}": hue_division(m, n) for n in m["hue"]["opencv_ranges"]},
+        **{
+            f"HUE_DIVISION_{turn}": hue_division(turn, hue["opencv_shift"])
+            for turn in hue["opencv_ranges"]
+        },
     }

@@ -19,6 +19,16 @@ CHUNK = 1 << 20
 CODES = {180: cv2.COLOR_RGB2HSV, 256: cv2.COLOR_RGB2HSV_FULL}
 
 
+def exact_hue(rgb: np.ndarray) -> np.ndarray:
+    """Hue 0..1535 by plain division, halves up."""
+    r, g, b = rgb.astype(np.int64).T
+    value = rgb.max(axis=1).astype(np.int64)
+    chroma = value - rgb.min(axis=1)
+    distance = np.select([value == r, value == g], [g - b, b - r + 2 * chroma], r - g + 4 * chroma)
+    divisor = np.maximum(chroma, 1)
+    return (512 * distance + divisor) // (2 * divisor) % 1536
+
+
 def main(hue_range: int) -> None:
     compared = different = 0
     for start in range(0, 1 << 24, CHUNK):
@@ -30,7 +40,9 @@ def main(hue_range: int) -> None:
         if hue_range in CODES:
             by_opencv = cv2.cvtColor(rgb[None], CODES[hue_range])[0]
             different += int((by_c != by_opencv).any(-1).sum())
-        else:  # the bins of the background step, whose grey comes from OpenCV
+        else:
+            different += int((by_c[:, 0] != exact_hue(rgb)).sum())
+            # The bins of the background step, whose grey comes from OpenCV in numpy.
             r, g, b = rgb.astype(np.int64).T
             grey = (9798 * r + 19235 * g + 3735 * b + 16384) >> 15
             different += int((grey_bins(rgb[None])[0] != grey * 5 >> 8).sum())

@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from chromadock import method
 
-_DIVISIONS = {
-    method.HUE_RANGE: method.HUE_DIVISION,
-    180: method.HUE_DIVISION_180,
-    256: method.HUE_DIVISION_256,
+# Steps a turn: the table that divides by chroma, and its fixed point.
+_HUE_SCALES = {
+    method.HUE_RANGE: (method.HUE_DIVISION, method.HUE_SHIFT),
+    180: (method.HUE_DIVISION_180, method.OPENCV_SHIFT),
+    256: (method.HUE_DIVISION_256, method.OPENCV_SHIFT),
 }
 
 
@@ -37,10 +38,11 @@ def hsv_from_rgb(
     distance = np.where(
         value == r, g - b, np.where(value == g, b - r + 2 * chroma, r - g + 4 * chroma)
     )
-    half = 1 << (method.HSV_SHIFT - 1)
-    hue = (distance * _DIVISIONS[hue_range][chroma] + half) >> method.HSV_SHIFT
+    division, shift = _HUE_SCALES[hue_range]
+    hue = (distance * division[chroma] + (1 << (shift - 1))) >> shift
     hue = np.where(hue < 0, hue + hue_range, hue)
-    saturation = (chroma * method.SATURATION_DIVISION[value] + half) >> method.HSV_SHIFT
+    half = 1 << (method.OPENCV_SHIFT - 1)
+    saturation = (chroma * method.SATURATION_DIVISION[value] + half) >> method.OPENCV_SHIFT
     return hue, saturation, value, chroma
 
 

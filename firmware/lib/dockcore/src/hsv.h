@@ -18,13 +18,25 @@ typedef struct {
     uint8_t red, green, blue;
 } rgb_t;
 
-/* `division` and `range` choose the hue's unit: with METHOD_HUE_DIVISION_180,
- * 180 and METHOD_HUE_DIVISION_256, 256 the result is that of OpenCV's 8-bit
- * COLOR_RGB2HSV and COLOR_RGB2HSV_FULL on every colour. */
-static inline hsv_t hsv_with_range(uint32_t red, uint32_t green, uint32_t blue,
-                                   const uint32_t *division, uint32_t range)
+/* How hue is counted: steps a turn, and the table that divides by chroma. */
+typedef struct {
+    uint16_t range;
+    uint8_t shift; /* fixed point of the table */
+    const uint32_t *division;
+} hue_scale_t;
+
+#define HUE_SCALE \
+    ((hue_scale_t){METHOD_HUE_RANGE, METHOD_HUE_SHIFT, METHOD_HUE_DIVISION})
+/* With these the result is that of OpenCV's 8-bit COLOR_RGB2HSV and
+ * COLOR_RGB2HSV_FULL on every colour. */
+#define HUE_SCALE_180 \
+    ((hue_scale_t){180, METHOD_OPENCV_SHIFT, METHOD_HUE_DIVISION_180})
+#define HUE_SCALE_256 \
+    ((hue_scale_t){256, METHOD_OPENCV_SHIFT, METHOD_HUE_DIVISION_256})
+
+static inline hsv_t hsv_on_scale(uint32_t red, uint32_t green, uint32_t blue,
+                                 hue_scale_t scale)
 {
-    const int32_t half = 1 << (METHOD_HSV_SHIFT - 1);
     const uint32_t most = red > green ? red : green;
     const uint32_t least = red > green ? green : red;
     const uint32_t value = most > blue ? most : blue;
@@ -36,15 +48,17 @@ static inline hsv_t hsv_with_range(uint32_t red, uint32_t green, uint32_t blue,
         distance = blue - red + 2 * chroma;
     else
         distance = red - green + 4 * chroma;
-    int32_t hue = ((int32_t)(distance * division[chroma]) + half) >>
-                  METHOD_HSV_SHIFT; /* arithmetic shift: rounds below red too */
+    /* Arithmetic shift: rounds halves up below red too. */
+    int32_t hue = ((int32_t)(distance * scale.division[chroma]) +
+                   (INT32_C(1) << (scale.shift - 1))) >>
+                  scale.shift;
     if (hue < 0)
-        hue += (int32_t)range;
+        hue += scale.range;
     hsv_t hsv;
     hsv.hue = (uint16_t)hue;
     hsv.saturation = (uint8_t)((chroma * METHOD_SATURATION_DIVISION[value] +
-                                (uint32_t)half) >>
-                               METHOD_HSV_SHIFT);
+                                (1u << (METHOD_OPENCV_SHIFT - 1))) >>
+                               METHOD_OPENCV_SHIFT);
     hsv.value = (uint8_t)value;
     hsv.chroma = (uint8_t)chroma;
     return hsv;
@@ -52,8 +66,7 @@ static inline hsv_t hsv_with_range(uint32_t red, uint32_t green, uint32_t blue,
 
 static inline hsv_t hsv_from_rgb(uint32_t red, uint32_t green, uint32_t blue)
 {
-    return hsv_with_range(red, green, blue, METHOD_HUE_DIVISION,
-                          METHOD_HUE_RANGE);
+    return hsv_on_scale(red, green, blue, HUE_SCALE);
 }
 
 /* The inverse.  A pure colour (saturation and value 255) goes to its hue and

@@ -1,0 +1,247 @@
+/* The whole dock: frames and time in, LED duties out. */
+#include "dock.h"
+
+#include <string.h>
+
+#include "fixture.h"
+#include "suite.h"
+
+static const colour_t blue_water = {0, 0, 200};
+static const colour_t green_water = {0, 200, 0};
+
+static dock_t dock;
+
+static void start_with(dock_settings_t settings)
+{
+    memset(&dock, 0xA5, sizeof dock);
+    dock_init(&dock, &settings);
+}
+
+/* Upright duties, so that a bright channel has a high figure. */
+static dock_settings_t upright(void)
+{
+    dock_settings_t settings = dock_default_settings();
+    settings.led.common_anode = false;
+    return settings;
+}
+
+static void start(void)
+{
+    start_with(upright());
+}
+
+static void show(colour_t water, uint32_t now_ms)
+{
+    const canvas_t canvas = canvas_of(FRAME_RGB888, 80, 60, water);
+    dock_frame(&dock, &canvas.frame, now_ms);
+    canvas_free_all();
+}
+
+static void assert_duties(int red, int green, int blue)
+{
+    uint16_t duty[3] = {9999, 9999, 9999};
+    dock_led_duties(&dock, duty);
+    TEST_ASSERT_EQUAL_UINT16(red, duty[0]);
+    TEST_ASSERT_EQUAL_UINT16(green, duty[1]);
+    TEST_ASSERT_EQUAL_UINT16(blue, duty[2]);
+}
+
+static void assert_counters(uint32_t frames, uint32_t camera_faults,
+                            uint32_t frame_faults)
+{
+    TEST_ASSERT_EQUAL_UINT32(frames, dock.counters.frames);
+    TEST_ASSERT_EQUAL_UINT32(camera_faults, dock.counters.camera_faults);
+    TEST_ASSERT_EQUAL_UINT32(frame_faults, dock.counters.frame_faults);
+}
+
+static void test_the_leds_are_dark_until_the_first_frame(void)
+{
+    dock_settings_t settings = upright();
+    start_with(settings);
+    assert_duties(0, 0, 0);
+
+    settings.led.common_anode = true;
+    start_with(settings);
+    assert_duties(4096, 4096, 4096);
+}
+
+static void test_faults_before_the_first_frame_leave_the_leds_dark(void)
+{
+    const canvas_t canvas = canvas_new(FRAME_RGB888, 8, 6);
+    frame_t cut = canvas.frame;
+    cut.length--;
+    start();
+
+    dock_frame(&dock, NULL, 0);
+    dock_frame(&dock, &cut, 33);
+
+    assert_duties(0, 0, 0);
+}
+
+static void test_blue_water_lights_the_leds_red(void)
+{
+    start();
+    show(blue_water, 0);
+    assert_duties(4096, 0, 0);
+}
+
+static void test_the_leds_follow_at_the_next_frame(void)
+{
+    start();
+    show(blue_water, 0);
+    show(green_water, 33); /* markers red and blue: magenta in the middle */
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decided_hue);
+    TEST_ASSERT_EQUAL_UINT16(1280, dock.marker_hue);
+    assert_duties(4096, 0, 4096);
+
+    show(green_water, 2033);
+    assert_duties(0, 0, 4096);
+}
+
+static void test_the_window_is_that_of_the_settings(void)
+{
+    dock_settings_t settings = upright();
+    settings.window_ms = 100;
+    start_with(settings);
+    show(blue_water, 0);
+
+    show(green_water, 99);
+    TEST_ASSERT_EQUAL_UINT16(1280, dock.marker_hue);
+    show(green_water, 199);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.marker_hue);
+}
+
+static void test_the_mapping_is_that_of_the_settings(void)
+{
+    dock_settings_t settings = upright();
+    settings.mapping = METHOD_MAPPING_COMPLEMENT;
+    start_with(settings);
+
+    show(blue_water, 0);
+
+    assert_duties(4096, 4096, 0);
+}
+
+static void test_night_shows_the_fallback_of_the_settings(void)
+{
+    dock_settings_t settings = upright();
+    settings.fallback_hue = 256;
+    start_with(settings);
+
+    show((colour_t){0, 0, 0}, 0);
+
+    assert_duties(4096, 4096, 0);
+}
+
+static void test_a_missing_frame_is_a_camera_fault(void)
+{
+    canvas_t canvas = canvas_new(FRAME_RGB888, 80, 60);
+    start();
+    show(blue_water, 0);
+
+    dock_frame(&dock, NULL, 33);
+    canvas.frame.bytes = NULL;
+    dock_frame(&dock, &canvas.frame, 66);
+
+    assert_counters(1, 2, 0);
+    assert_duties(4096, 0, 0);
+}
+
+/* Green water in a frame spoilt by the caller: the dock stays with red. */
+static void assert_refused(frame_t spoilt)
+{
+    start();
+    const canvas_t water = canvas_of(FRAME_RGB888, 80, 60, blue_water);
+    dock_frame(&dock, &water.frame, 0);
+
+    dock_frame(&dock, &spoilt, 33);
+
+    assert_counters(1, 0, 1);
+    assert_duties(4096, 0, 0);
+    TEST_ASSERT_EQUAL_UINT16(0, dock.decided_hue);
+    TEST_ASSERT_EQUAL_UINT8(1, dock.rolling.count);
+}
+
+static void test_a_frame_of_the_wrong_length_is_a_fault(void)
+{
+    frame_t frame = canvas_of(FRAME_RGB888, 80, 60, green_water).frame;
+    frame.length--;
+    assert_refused(frame);
+    frame.length += 2;
+    assert_refused(frame);
+}
+
+static void test_a_frame_without_size_is_a_fault(void)
+{
+    frame_t frame = canvas_of(FRAME_RGB888, 80, 60, green_water).frame;
+    frame.width = 0;
+    assert_refused(frame);
+    frame.length = 0;
+    assert_refused(frame);
+}
+
+static void test_an_unaligned_frame_is_a_fault(void)
+{
+    frame_t frame = canvas_new(FRAME_RGB888, 80, 60).frame;
+    frame.bytes++;
+    frame.format = FRAME_RGB565;
+    frame.length = 9600;
+    assert_refused(frame);
+}
+
+static void test_a_frame_of_unknown_format_is_a_fault(void)
+{
+    frame_t frame = canvas_of(FRAME_RGB888, 80, 60, green_water).frame;
+    frame.format = (frame_format_t)2;
+    assert_refused(frame);
+}
+
+static void test_a_good_frame_after_faults_is_decided_on(void)
+{
+    start();
+    show(blue_water, 0);
+    for (uint32_t i = 1; i < 100; i++)
+        dock_frame(&dock, NULL, 33 * i);
+
+    show(green_water, 3300);
+
+    assert_counters(2, 99, 0);
+    assert_duties(0, 0, 4096);
+}
+
+static void test_counters_stay_at_their_most(void)
+{
+    const canvas_t canvas = canvas_new(FRAME_RGB888, 1, 1);
+    frame_t cut = canvas.frame;
+    cut.length--;
+    start();
+    dock.counters =
+        (dock_counters_t){UINT32_MAX - 1, UINT32_MAX - 1, UINT32_MAX - 1};
+    for (int i = 0; i < 3; i++) {
+        dock_frame(&dock, &canvas.frame, 0);
+        dock_frame(&dock, &cut, 0);
+        dock_frame(&dock, NULL, 0);
+
+        assert_counters(UINT32_MAX, UINT32_MAX, UINT32_MAX);
+    }
+}
+
+static void run_tests(void)
+{
+    RUN_TEST(test_the_leds_are_dark_until_the_first_frame);
+    RUN_TEST(test_faults_before_the_first_frame_leave_the_leds_dark);
+    RUN_TEST(test_blue_water_lights_the_leds_red);
+    RUN_TEST(test_the_leds_follow_at_the_next_frame);
+    RUN_TEST(test_the_window_is_that_of_the_settings);
+    RUN_TEST(test_the_mapping_is_that_of_the_settings);
+    RUN_TEST(test_night_shows_the_fallback_of_the_settings);
+    RUN_TEST(test_a_missing_frame_is_a_camera_fault);
+    RUN_TEST(test_a_frame_of_the_wrong_length_is_a_fault);
+    RUN_TEST(test_a_frame_without_size_is_a_fault);
+    RUN_TEST(test_an_unaligned_frame_is_a_fault);
+    RUN_TEST(test_a_frame_of_unknown_format_is_a_fault);
+    RUN_TEST(test_a_good_frame_after_faults_is_decided_on);
+    RUN_TEST(test_counters_stay_at_their_most);
+}
+
+SUITE(run_tests)

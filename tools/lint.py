@@ -5,8 +5,10 @@ Each counts as one test.
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -15,6 +17,7 @@ from outcome import ROOT, Outcome, missing, show_step
 # The programs that pip installed beside this Python.
 BIN = Path(sys.executable).parent
 C_FOLDERS = ("firmware", "tests/firmware")
+DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
 CPPCHECK_CACHE = ROOT / "build" / "cppcheck"
 
 
@@ -95,6 +98,34 @@ def cppcheck() -> Outcome:
     )
 
 
+def compiles_with(compiler: str) -> Outcome:
+    """Compile dockcore with its own flags; a warning fails (a user's build only prints it)."""
+    reason = missing(compiler)
+    if reason is not None:
+        return Outcome(skips=[(f"{compiler} -Werror", reason)])
+    manifest = json.loads((DOCKCORE / "library.json").read_text())
+    sources = sorted((DOCKCORE / "src").glob("*.c"))
+    total = Outcome(passed=1)
+    with tempfile.TemporaryDirectory() as scratch:
+        for source in sources:
+            target = Path(scratch) / f"{source.stem}.o"
+            flags = manifest["build"]["flags"]
+            one = check(compiler, *flags, "-Werror", "-c", source, "-o", target)
+            if one.failed:
+                total = Outcome(failed=1, output=total.output + one.output)
+    return total
+
+
+def gcc() -> Outcome:
+    """Compile dockcore for this computer with gcc."""
+    return compiles_with("gcc")
+
+
+def clang() -> Outcome:
+    """Compile dockcore for this computer with clang."""
+    return compiles_with("clang")
+
+
 LINTS: Sequence[tuple[str, Callable[[], Outcome]]] = (
     ("contract", contract),
     ("ruff check", ruff_check),
@@ -102,6 +133,8 @@ LINTS: Sequence[tuple[str, Callable[[], Outcome]]] = (
     ("mypy --strict", mypy),
     ("clang-format", clang_format),
     ("cppcheck", cppcheck),
+    ("gcc -Werror", gcc),
+    ("clang -Werror", clang),
 )
 
 

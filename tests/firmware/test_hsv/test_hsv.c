@@ -200,10 +200,8 @@ static void test_the_ranges_of_opencv_come_from_the_same_formula(void)
     static const uint16_t of_256[6] = {0, 43, 85, 128, 171, 213};
     for (int i = 0; i < 6; i++) {
         const uint8_t *c = corner[i];
-        const hsv_t narrow =
-            hsv_on_scale(c[0], c[1], c[2], HUE_SCALE_180);
-        const hsv_t full =
-            hsv_on_scale(c[0], c[1], c[2], HUE_SCALE_256);
+        const hsv_t narrow = hsv_on_scale(c[0], c[1], c[2], HUE_SCALE_180);
+        const hsv_t full = hsv_on_scale(c[0], c[1], c[2], HUE_SCALE_256);
         assert_hsv(of_180[i], 255, 255, narrow);
         assert_hsv(of_256[i], 255, 255, full);
     }

@@ -62,16 +62,6 @@ static void test_grey_weighs_the_channels_as_the_eye_does(void)
     TEST_ASSERT_EQUAL_UINT32(1, bin_of(pixel_pack(0, 50, 195))); /* 51.58 */
 }
 
-static void test_the_bin_is_written_above_the_colour(void)
-{
-    decide_on(1, GREY(80), pixel_pack(200, 210, 220));
-
-    TEST_ASSERT_EQUAL_HEX32(GREY(80) | 1u << 28, image.pixel[0]);
-    TEST_ASSERT_EQUAL_HEX32(pixel_pack(200, 210, 220) | 4u << 28,
-                            image.pixel[1]);
-    TEST_ASSERT_EQUAL_UINT32(1, pixel_bin(image.pixel[0]));
-}
-
 static void test_value_is_the_mean_and_halves_go_up(void)
 {
     decide_on(2400, GREY(110), GREY(111));
@@ -142,7 +132,6 @@ static void run_tests(void)
     RUN_TEST(test_the_pixels_of_every_bin_are_counted);
     RUN_TEST(test_bins_are_fifths_of_the_grey_scale);
     RUN_TEST(test_grey_weighs_the_channels_as_the_eye_does);
-    RUN_TEST(test_the_bin_is_written_above_the_colour);
     RUN_TEST(test_value_is_the_mean_and_halves_go_up);
     RUN_TEST(test_saturation_is_the_mean_and_halves_go_up);
     RUN_TEST(test_only_the_pixels_of_the_bin_count);

@@ -144,8 +144,8 @@ static void test_all_colours_have_the_right_saturation_and_value(void)
         const int32_t saturation = (510 * chroma + value) / (2 * value);
         const int32_t off = apart(saturation, hsv.saturation);
         inexact += off != 0;
-        if (hsv.value != value || hsv.chroma != chroma || off > 1 ||
-            (hsv.saturation == 0) != (chroma == 0))
+        if ((int32_t)hsv.value != value || (int32_t)hsv.chroma != chroma ||
+            off > 1 || (hsv.saturation == 0) != (chroma == 0))
             TEST_ASSERT_EQUAL_HEX32_MESSAGE(-1, rgb, "S, V of this colour");
     }
     TEST_ASSERT_TRUE(inexact < 1 << 18); /* 0.7 % */

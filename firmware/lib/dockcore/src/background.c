@@ -4,52 +4,57 @@
 
 #include "hsv.h"
 
-/* OpenCV's COLOR_RGB2GRAY, then five equal intervals. */
-static inline uint32_t grey_bin(uint32_t pixel)
+/* OpenCV's COLOR_RGB2GRAY, then five equal intervals.  The three weights add up
+ * to 1, so that two products are enough. */
+static inline uint32_t grey_bin(uint32_t red, uint32_t green, uint32_t blue)
 {
-    const uint32_t grey = (METHOD_GREY_RED * pixel_red(pixel) +
-                           METHOD_GREY_GREEN * pixel_green(pixel) +
-                           METHOD_GREY_BLUE * pixel_blue(pixel) +
-                           (1u << (METHOD_GREY_SHIFT - 1))) >>
-                          METHOD_GREY_SHIFT;
+    const int32_t above_blue = METHOD_GREY_RED * (int32_t)(red - blue) +
+                               METHOD_GREY_GREEN * (int32_t)(green - blue) +
+                               (1 << (METHOD_GREY_SHIFT - 1));
+    const uint32_t grey = blue + (uint32_t)(above_blue >> METHOD_GREY_SHIFT);
     return grey * METHOD_GREY_BINS >> 8;
 }
 
-static void count_bins(background_t *background, working_image_t *image)
+/* The pixels of one bin. */
+typedef struct {
+    uint32_t count;
+    hue_vector_t hue;
+    uint32_t chroma, saturation, value;
+} sums_t;
+
+static void sum_bins(sums_t sums[METHOD_GREY_BINS],
+                     const working_image_t *image)
 {
-    uint32_t counts[METHOD_GREY_BINS] = {0};
     for (uint32_t i = 0; i < WORKING_PIXELS; i++) {
-        const uint32_t bin = grey_bin(image->pixel[i]);
-        image->pixel[i] |= bin << PIXEL_BIN_SHIFT;
-        counts[bin]++;
-    }
-    for (uint8_t bin = 0; bin < METHOD_GREY_BINS; bin++) {
-        background->bin_counts[bin] = (uint16_t)counts[bin];
-        if (counts[bin] > counts[background->bin])
-            background->bin = bin;
+        const uint32_t pixel = image->pixel[i];
+        const uint32_t red = pixel_red(pixel);
+        const uint32_t green = pixel_green(pixel);
+        const uint32_t blue = pixel_blue(pixel);
+        const hsv_t hsv = hsv_from_rgb(red, green, blue);
+        const int32_t chroma = (int32_t)hsv.chroma;
+        sums_t *sum = &sums[grey_bin(red, green, blue)];
+        sum->count++;
+        const int16_t *sine = METHOD_SINE + hsv.hue;
+        sum->hue.x += chroma * sine[METHOD_HUE_RANGE / 4];
+        sum->hue.y += chroma * sine[0];
+        sum->chroma += hsv.chroma;
+        sum->saturation += hsv.saturation;
+        sum->value += hsv.value;
     }
 }
 
-static void sum_colours(background_t *background, const working_image_t *image)
+static void keep_fullest(background_t *background, const sums_t *sums)
 {
-    int32_t x = 0, y = 0;
-    uint32_t chroma = 0, saturation = 0, value = 0;
-    for (uint32_t i = 0; i < WORKING_PIXELS; i++) {
-        const uint32_t pixel = image->pixel[i];
-        if (pixel_bin(pixel) != background->bin)
-            continue;
-        const hsv_t hsv = hsv_from_rgb(pixel_red(pixel), pixel_green(pixel),
-                                       pixel_blue(pixel));
-        x += hsv.chroma * hue_cos(hsv.hue);
-        y += hsv.chroma * hue_sin(hsv.hue);
-        chroma += hsv.chroma;
-        saturation += hsv.saturation;
-        value += hsv.value;
+    for (uint8_t bin = 0; bin < METHOD_GREY_BINS; bin++) {
+        background->bin_counts[bin] = (uint16_t)sums[bin].count;
+        if (sums[bin].count > sums[background->bin].count)
+            background->bin = bin;
     }
-    background->hue_sum = (hue_vector_t){x, y};
-    background->chroma_sum = chroma;
-    background->saturation_sum = saturation;
-    background->value_sum = value;
+    const sums_t *fullest = &sums[background->bin];
+    background->hue_sum = fullest->hue;
+    background->chroma_sum = fullest->chroma;
+    background->saturation_sum = fullest->saturation;
+    background->value_sum = fullest->value;
 }
 
 /* Length of the mean hue vector over the mean chroma, 0..255.  The length is
@@ -64,11 +69,13 @@ static uint8_t resultant(const background_t *b)
     return (uint8_t)(part < 255 ? part : 255);
 }
 
-void background_from_image(background_t *background, working_image_t *image)
+void background_from_image(background_t *background,
+                           const working_image_t *image)
 {
+    sums_t sums[METHOD_GREY_BINS] = {{0}};
     memset(background, 0, sizeof *background);
-    count_bins(background, image);
-    sum_colours(background, image);
+    sum_bins(sums, image);
+    keep_fullest(background, sums);
 
     const uint32_t n = background->bin_counts[background->bin];
     background->saturation =

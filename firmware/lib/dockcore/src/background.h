@@ -22,7 +22,8 @@ typedef struct {
     bool meaningful;    /* false: grey water, night or a mixture: no hue */
 } background_t;
 
-/* Reads a smoothed image; writes each pixel's grey bin into its top bits. */
-void background_from_image(background_t *background, working_image_t *image);
+/* Of a smoothed image. */
+void background_from_image(background_t *background,
+                           const working_image_t *image);
 
 #endif

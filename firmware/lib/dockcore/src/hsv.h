@@ -7,11 +7,12 @@
 
 #include "method.h"
 
+/* Words, though the values are small: nothing is cut off on the way. */
 typedef struct {
-    uint16_t hue;
-    uint8_t saturation;
-    uint8_t value;
-    uint8_t chroma; /* value minus the least channel */
+    uint32_t hue;
+    uint32_t saturation;
+    uint32_t value;
+    uint32_t chroma; /* value minus the least channel */
 } hsv_t;
 
 typedef struct {
@@ -37,31 +38,40 @@ typedef struct {
 static inline hsv_t hsv_on_scale(uint32_t red, uint32_t green, uint32_t blue,
                                  hue_scale_t scale)
 {
-    const uint32_t most = red > green ? red : green;
-    const uint32_t least = red > green ? green : red;
-    const uint32_t value = most > blue ? most : blue;
-    const uint32_t chroma = value - (least < blue ? least : blue);
-    uint32_t distance; /* along the hexagon from red, in units of chroma */
-    if (value == red)
-        distance = green - blue;
-    else if (value == green)
-        distance = blue - red + 2 * chroma;
-    else
-        distance = red - green + 4 * chroma;
+    /* A tree rather than minimum and maximum: each sextant compares twice or
+     * three times and knows all the rest. */
+    uint32_t value, least;
+    uint32_t distance; /* along the hexagon from red, less `turned` chromas */
+    uint32_t turned;
+    if (red >= green) {
+        if (green >= blue) {
+            value = red, least = blue, distance = green - blue, turned = 0;
+        } else if (red >= blue) {
+            value = red, least = green, distance = green - blue, turned = 0;
+        } else {
+            value = blue, least = green, distance = red - green, turned = 4;
+        }
+    } else {
+        if (blue > green) {
+            value = blue, least = red, distance = red - green, turned = 4;
+        } else if (blue > red) {
+            value = green, least = red, distance = blue - red, turned = 2;
+        } else {
+            value = green, least = blue, distance = blue - red, turned = 2;
+        }
+    }
+    const uint32_t chroma = value - least;
+    distance += turned * chroma;
     /* Arithmetic shift: rounds halves up below red too. */
     int32_t hue = ((int32_t)(distance * scale.division[chroma]) +
                    (INT32_C(1) << (scale.shift - 1))) >>
                   scale.shift;
     if (hue < 0)
         hue += scale.range;
-    hsv_t hsv;
-    hsv.hue = (uint16_t)hue;
-    hsv.saturation = (uint8_t)((chroma * METHOD_SATURATION_DIVISION[value] +
-                                (1u << (METHOD_OPENCV_SHIFT - 1))) >>
-                               METHOD_OPENCV_SHIFT);
-    hsv.value = (uint8_t)value;
-    hsv.chroma = (uint8_t)chroma;
-    return hsv;
+    const uint32_t saturation = (chroma * METHOD_SATURATION_DIVISION[value] +
+                                 (1u << (METHOD_OPENCV_SHIFT - 1))) >>
+                                METHOD_OPENCV_SHIFT;
+    return (hsv_t){(uint32_t)hue, saturation, value, chroma};
 }
 
 static inline hsv_t hsv_from_rgb(uint32_t red, uint32_t green, uint32_t blue)

@@ -49,6 +49,7 @@ void qqvga_average(working_image_t *image, const frame_t *frame)
     uint32_t *out = image->pixel;
     for (uint32_t y = 0; y < METHOD_WORKING_HEIGHT; y++) {
         const word_t *lower = upper + WIDTH / 2;
+#pragma GCC unroll 2
         for (uint32_t x = 0; x < METHOD_WORKING_WIDTH; x++)
             *out++ = mean_pixel(*upper++, *lower++);
         upper = lower;

@@ -4,54 +4,62 @@
 
 #define WIDTH METHOD_WORKING_WIDTH
 
-/* left + 2 * here + right of a row, all three channels at once: at most 1020,
- * which fits the ten bits that each has. */
-static void blur_row(uint32_t *out, const uint32_t *row)
+/* Sums of all three channels at once, up to 16 * 255 each.  In `all` red and
+ * green have grown into each other; without `red_blue`, green is left. */
+typedef struct {
+    uint32_t all, red_blue;
+} sum_t;
+
+static inline sum_t plus(sum_t a, sum_t b)
 {
-    uint32_t left = row[0], here = row[0];
-    for (uint32_t x = 0; x < WIDTH - 1; x++) {
-        const uint32_t right = row[x + 1];
-        out[x] = left + 2 * here + right;
-        left = here;
-        here = right;
+    return (sum_t){a.all + b.all, a.red_blue + b.red_blue};
+}
+
+/* above + 2 * here + below, and a quarter of the 8 that rounds the sixteenth:
+ * at most 1022, within the ten bits of a channel.  `above` gets what stands
+ * here, for the next row. */
+static inline sum_t column(uint32_t *above, uint32_t here, uint32_t below)
+{
+    const uint32_t sum = *above + 2 * here + below + pixel_pack(2, 2, 2);
+    *above = here;
+    return (sum_t){sum, sum & UINT32_C(0x3FF003FF)};
+}
+
+static inline uint32_t sixteenth(sum_t sum)
+{
+    const uint32_t green = sum.all - sum.red_blue;
+    return ((sum.red_blue & UINT32_C(0xFF000FF0)) |
+            (green & UINT32_C(0x003FC000))) >>
+           4;
+}
+
+/* One row in place: two columns in turns, each twice as heavy as its
+ * neighbours by being added to either. */
+static void smooth_row(uint32_t *row, uint32_t *above, const uint32_t *below)
+{
+    sum_t even = column(above, row[0], below[0]);
+    sum_t left = plus(even, even), right;
+    for (uint32_t x = 1; x < WIDTH - 1; x += 2) {
+        const sum_t odd = column(above + x, row[x], below[x]);
+        right = plus(even, odd);
+        row[x - 1] = sixteenth(plus(left, right));
+        even = column(above + x + 1, row[x + 1], below[x + 1]);
+        left = plus(odd, even);
+        row[x] = sixteenth(plus(right, left));
     }
-    out[WIDTH - 1] = left + 3 * here;
-}
-
-/* Half of a + b, rounded down, in each ten-bit field. */
-static inline uint32_t half_sum(uint32_t a, uint32_t b)
-{
-    return (a & b) + (((a ^ b) & UINT32_C(0x3FEFFBFE)) >> 1);
-}
-
-/* (above + 2 * here + below + 8) / 16, rounded down, in each field.  Halving
- * on the way keeps ten bits enough and, as floor(floor(x) / n) = floor(x / n),
- * changes nothing. */
-static inline uint32_t blur_column(uint32_t above, uint32_t here,
-                                   uint32_t below)
-{
-    const uint32_t two = pixel_pack(2, 2, 2);
-    const uint32_t quarter = half_sum(half_sum(above, below), here);
-    return (quarter + two) >> 2 & pixel_pack(0xFF, 0xFF, 0xFF);
+    const sum_t last =
+        column(above + WIDTH - 1, row[WIDTH - 1], below[WIDTH - 1]);
+    right = plus(even, last);
+    row[WIDTH - 2] = sixteenth(plus(left, right));
+    row[WIDTH - 1] = sixteenth(plus(right, plus(last, last)));
 }
 
 void working_image_smooth(working_image_t *image)
 {
-    uint32_t lines[3][WIDTH];
-    uint32_t *above = lines[0], *here = lines[1], *below = lines[2];
-    blur_row(here, image->pixel);
-    memcpy(above, here, sizeof lines[0]);
-    for (uint32_t y = 0; y < METHOD_WORKING_HEIGHT; y++) {
-        uint32_t *row = image->pixel + y * WIDTH;
-        if (y + 1 < METHOD_WORKING_HEIGHT)
-            blur_row(below, row + WIDTH);
-        else
-            memcpy(below, here, sizeof lines[0]);
-        for (uint32_t x = 0; x < WIDTH; x++)
-            row[x] = blur_column(above[x], here[x], below[x]);
-        uint32_t *const oldest = above;
-        above = here;
-        here = below;
-        below = oldest;
-    }
+    uint32_t above[WIDTH];
+    uint32_t *row = image->pixel, *const last = row + (WORKING_PIXELS - WIDTH);
+    memcpy(above, row, sizeof above);
+    for (; row < last; row += WIDTH)
+        smooth_row(row, above, row + WIDTH);
+    smooth_row(row, above, row);
 }

@@ -10,15 +10,13 @@
 #define WORKING_PIXELS (METHOD_WORKING_WIDTH * METHOD_WORKING_HEIGHT)
 
 /* One pixel a word, the channels ten bits apart: room for sums of four 8-bit
- * values, so that one addition adds all three channels.  Bits 28..31 are free
- * for the grey bin once the values are back within 8 bits. */
+ * values, so that one addition adds all three channels. */
 typedef struct {
     uint32_t pixel[WORKING_PIXELS];
 } working_image_t;
 
 #define PIXEL_RED_SHIFT 20
 #define PIXEL_GREEN_SHIFT 10
-#define PIXEL_BIN_SHIFT 28
 
 static inline uint32_t pixel_pack(uint32_t red, uint32_t green, uint32_t blue)
 {
@@ -38,11 +36,6 @@ static inline uint32_t pixel_green(uint32_t pixel)
 static inline uint32_t pixel_blue(uint32_t pixel)
 {
     return pixel & 0xFF;
-}
-
-static inline uint32_t pixel_bin(uint32_t pixel)
-{
-    return pixel >> PIXEL_BIN_SHIFT;
 }
 
 /* Box average of a valid frame.  Cell i of n covers the source pixels from

@@ -1,0 +1,148 @@
+#include "budget.h"
+
+#include "board.h"
+#include "console.h"
+#include "instructions.h"
+#include "vectors.h"
+
+#define FRAME_MS 33 /* 30 Hz: a window full of decisions */
+
+static dock_t dock;
+
+static void put_instructions(const char *name, const char *stage,
+                             uint32_t start, uint32_t end)
+{
+    put_word("instructions");
+    put_word(name);
+    put_word(stage);
+    put_number(instructions_between(start, end));
+    put_line_end();
+}
+
+/* Settings of the frame and as many decisions as the window holds, with hues
+ * that lie apart: the most work.  Returns the time of the next decision. */
+static uint32_t fill_window(const golden_frame_t *golden)
+{
+    const dock_settings_t settings = golden_settings(golden);
+    uint32_t now_ms = 0;
+    dock_init(&dock, &settings);
+    for (uint16_t i = 0; i < METHOD_WINDOW_CAPACITY; i++) {
+        rolling_add(&dock.rolling, i, now_ms, settings.window_ms);
+        now_ms += FRAME_MS;
+    }
+    return now_ms;
+}
+
+static void count_stages(const golden_frame_t *golden)
+{
+    const frame_t frame = golden_frame(golden);
+    const uint32_t now_ms = fill_window(golden);
+    const dock_settings_t *settings = &dock.settings;
+    uint16_t duties[3];
+    const uint32_t start = ticks();
+    working_image_from_frame(&dock.image, &frame);
+    const uint32_t averaged = ticks();
+    working_image_smooth(&dock.image);
+    const uint32_t smoothed = ticks();
+    background_from_image(&dock.background, &dock.image);
+    const uint32_t summed = ticks();
+    const uint16_t hue =
+        marker_hue(&dock.background, settings->mapping, settings->fallback_hue);
+    const uint16_t mean =
+        rolling_add(&dock.rolling, hue, now_ms, settings->window_ms);
+    led_duties(duties, mean, &settings->led);
+    const uint32_t decided = ticks();
+    put_instructions(golden->name, "working_image", start, averaged);
+    put_instructions(golden->name, "smooth", averaged, smoothed);
+    put_instructions(golden->name, "background", smoothed, summed);
+    put_instructions(golden->name, "decision", summed, decided);
+}
+
+static void count_total(const golden_frame_t *golden)
+{
+    const frame_t frame = golden_frame(golden);
+    const uint32_t now_ms = fill_window(golden);
+    uint16_t duties[3];
+    const uint32_t start = ticks();
+    dock_frame(&dock, &frame, now_ms);
+    dock_led_duties(&dock, duties);
+    put_instructions(golden->name, "total", start, ticks());
+}
+
+bool print_instructions(void)
+{
+    if (!instructions_calibrate())
+        return false;
+    for (size_t i = 0; i < golden_frame_count; i++) {
+        const golden_frame_t *golden = &golden_frames[i];
+        if (golden->format != FRAME_RGB565 || golden->width != 160 ||
+            golden->height != 120)
+            continue;
+        count_stages(golden);
+        count_total(golden);
+    }
+    return true;
+}
+
+#define STACK_WORDS 2048
+#define PAINT UINT32_C(0xA5C3965A)
+
+static uint32_t stack[STACK_WORDS + 4] __attribute__((aligned(16)));
+
+/* Bytes of stack that the call wrote to. */
+static uint32_t stack_used(const stack_call_t *call)
+{
+    uint32_t untouched = 0;
+    for (uint32_t i = 0; i < STACK_WORDS; i++)
+        stack[i] = PAINT;
+    stack_call(stack + STACK_WORDS, call);
+    while (untouched < STACK_WORDS && stack[untouched] == PAINT)
+        untouched++;
+    return (STACK_WORDS - untouched) * (uint32_t)sizeof stack[0];
+}
+
+static bool put_stack(const char *function, uint32_t used)
+{
+    put_word("stack");
+    put_word(function);
+    put_number(used);
+    put_line_end();
+    return used < sizeof(uint32_t) * STACK_WORDS;
+}
+
+static void keep_larger(uint32_t *most, uint32_t value)
+{
+    if (value > *most)
+        *most = value;
+}
+
+bool print_stack(void)
+{
+    uint32_t of_init = 0, of_frame = 0, of_duties = 0;
+    for (size_t i = 0; i < golden_frame_count; i++) {
+        const frame_t frame = golden_frame(&golden_frames[i]);
+        const dock_settings_t settings = golden_settings(&golden_frames[i]);
+        uint16_t duties[3];
+        const uintptr_t at = (uintptr_t)&dock;
+        const stack_call_t init = {(uintptr_t)dock_init,
+                                   {at, (uintptr_t)&settings, 0}};
+        const stack_call_t decide = {(uintptr_t)dock_frame,
+                                     {at, (uintptr_t)&frame, FRAME_MS}};
+        const stack_call_t drive = {(uintptr_t)dock_led_duties,
+                                    {at, (uintptr_t)duties, 0}};
+        keep_larger(&of_init, stack_used(&init));
+        keep_larger(&of_frame, stack_used(&decide));
+        keep_larger(&of_duties, stack_used(&drive));
+    }
+    const bool init_fits = put_stack("dock_init", of_init);
+    const bool frame_fits = put_stack("dock_frame", of_frame);
+    const bool duties_fit = put_stack("dock_led_duties", of_duties);
+    return init_fits && frame_fits && duties_fit;
+}
+
+void print_memory(void)
+{
+    put_word("dock_bytes");
+    put_number(sizeof(dock_t));
+    put_line_end();
+}

@@ -1,0 +1,2 @@
+/* The bare compiler has its own, but under another name. */
+#include <stdint-gcc.h>

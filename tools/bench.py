@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import budgets
-from bench_host import SkippedError, host_ratios
+from bench_host import SkippedError, host_ratios, resident_mib
 from rich.console import Console
 from rich.table import Table
 from xtensa import Measurement, measure
@@ -53,6 +53,9 @@ def main() -> int:
         host["ratio_to_gaussian_blur"], left_out = host_ratios()
         skipped += left_out
         show_ratios(host["ratio_to_gaussian_blur"])
+        host["resident_mib"] = resident_mib()
+        text = judged(host["resident_mib"], budgets.RESIDENT_MIB, f"{host['resident_mib']:.0f}")
+        console.print(f"chromadock detect on VGA video: {text} of {budgets.RESIDENT_MIB} MiB")
     except SkippedError as error:
         skipped.append(str(error))
     for line in skipped:

@@ -1,8 +1,12 @@
-"""Times ``Detector.process`` against one Gaussian blur of the same frame."""
+"""Times ``Detector.process`` against one Gaussian blur of the same frame; host memory."""
 
 from __future__ import annotations
 
+import resource
 import statistics
+import subprocess
+import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -56,6 +60,24 @@ def host_ratios() -> tuple[dict[str, float], list[str]]:
     return ratios, skipped
 
 
+def resident_mib(frames: int = 60) -> float:
+    """Most memory that ``chromadock detect`` holds on a VGA video, MiB."""
+    import cv2
+
+    with tempfile.TemporaryDirectory() as folder:
+        video = str(Path(folder) / "vga.mp4")
+        codec = cv2.VideoWriter_fourcc(*"mp4v")
+        writer = cv2.VideoWriter(video, codec, 30, (WIDTH, HEIGHT))
+        for _ in range(frames):
+            writer.write(plain_water())
+        writer.release()
+        # In a process of its own: the figure is the largest of all its children.
+        done = subprocess.run(
+            [sys.executable, __file__, video], check=True, capture_output=True, text=True
+        )
+    return float(done.stdout)
+
+
 def plain_water() -> Any:
     """Make a frame of blue-green water, darker downwards, with a camera's noise."""
     import numpy as np
@@ -104,3 +126,14 @@ def scene_ratios(scene: str, frame: Any, detector: Any) -> dict[str, float]:
             if stage != "total":
                 ratios.setdefault(f"{scene}/{stage}", []).append(stage_ms / 1000 / blur_s)
     return {name: round(statistics.median(values), 3) for name, values in ratios.items()}
+
+
+def main() -> None:
+    """Run ``chromadock detect`` on a video and print the memory it took, MiB."""
+    detect = [sys.executable, "-m", "chromadock", "detect", sys.argv[1], "--json"]
+    subprocess.run(detect, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
+
+
+if __name__ == "__main__":
+    main()

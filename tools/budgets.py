@@ -9,3 +9,5 @@ STACK_BYTES = 1536
 
 # Detector.process against one 5 x 5 Gaussian blur of the same VGA frame, one thread.
 BLUR_RATIO = 5
+
+RESIDENT_MIB = 200  # of `chromadock detect` on VGA video

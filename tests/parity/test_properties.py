@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from chromadock.colour.hsv import hue_of_vector
+from chromadock.colour.hsv import hue_of_vector, rgb_from_hsv
 from chromadock.colour.marker import RollingHue
 from chromadock_firmware import ffi, lib
 
@@ -73,3 +73,12 @@ def test_duties_stay_in_range_and_polarity_mirrors_them(
     assert (duties[0] <= lib.LED_FULL).all()
     assert (duties[0] + duties[1] == lib.LED_FULL).all()
     assert (duties[0] <= np.ceil(lib.LED_FULL * limit / 255)).all()
+
+
+@given(HUE, st.integers(0, 255), st.integers(0, 255))
+def test_the_colour_of_any_hue_saturation_and_value(hue: int, saturation: int, value: int) -> None:
+    c = lib.rgb_from_hsv(hue, saturation, value)
+    rgb = (c.red, c.green, c.blue)
+    assert rgb == rgb_from_hsv(hue, saturation, value)
+    assert max(rgb) == value
+    assert abs(max(rgb) - min(rgb) - value * saturation / 255) <= 0.5

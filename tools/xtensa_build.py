@@ -7,6 +7,7 @@ import hashlib
 import json
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = ROOT / "firmware" / "lib" / "dockcore"
 HARNESS = ROOT / "firmware" / "xtensa"
+MAVLINK = ROOT / "build" / "mavlink" / "c"
 GOLDEN = ROOT / "tests" / "firmware"
 PIXELS = ROOT / "shared" / "vectors"
 BUILD = ROOT / "build" / "xtensa"
@@ -26,7 +28,19 @@ SIZE = f"{PREFIX}size"
 PACKAGES = {COMPILER: "gcc-xtensa-lx106", SIZE: "binutils-xtensa-lx106"}
 
 # The linker drops what is not reached from these: the sizes are those of a dock.
-ENTRY_POINTS = ("dock_init", "dock_frame", "dock_led_duties")
+ENTRY_POINTS = (
+    "dock_init",
+    "dock_set_board",
+    "dock_set_camera",
+    "dock_frame",
+    "dock_receive",
+    "dock_transmit",
+    "dock_take_request",
+    "dock_saved",
+    "dock_led_duties",
+    "settings_to_blob",
+    "settings_from_blob",
+)
 
 BUILD_FLAGS = ["-Werror", "-ffunction-sections", "-fdata-sections", "-mtext-section-literals"]
 # Or GCC would turn memcpy's loop into a call of memcpy.
@@ -103,7 +117,9 @@ def build() -> None:
     flags = library_flags()
     stamp = BUILD / "stamp"
     with locked(BUILD):
-        state = digest([*flags, run([COMPILER, "--version"], 10)])
+        run([sys.executable, ROOT / "shared" / "mavlink.py"], 60)
+        mavlink = (MAVLINK / ".stamp").read_text()
+        state = digest([*flags, mavlink, run([COMPILER, "--version"], 10)])
         if stamp.is_file() and stamp.read_text() == state:
             return
         stamp.unlink(missing_ok=True)
@@ -138,7 +154,8 @@ def compile_and_link(library: Sequence[str]) -> None:
     core = sorted((LIBRARY / "src").glob("*.c"))
     runtime = HARNESS / "runtime.c"
     harness = sorted({*HARNESS.glob("*.c"), *HARNESS.glob("*.S")} - {runtime})
-    headers = [f"-isystem{HARNESS / 'include'}", f"-I{LIBRARY / 'src'}", f"-I{GOLDEN}"]
+    system = [f"-isystem{HARNESS / 'include'}", f"-isystem{MAVLINK}"]
+    headers = [*system, f"-I{LIBRARY / 'src'}", f"-I{GOLDEN}"]
     compiler = [COMPILER, *library, *BUILD_FLAGS, *headers, f"-Wa,-I{PIXELS}", "-c"]
     run([*compiler, *core, *harness, GOLDEN / "golden.c"], 120)
     run([*compiler, *RUNTIME_FLAGS, runtime], 60)

@@ -10,12 +10,17 @@ import os
 import re
 import shlex
 import subprocess
+import sys
 from pathlib import Path
 
 from cffi import FFI
 
 HERE = Path(__file__).resolve().parent
 DOCKCORE = HERE.parent / "lib" / "dockcore" / "src"
+SHARED = HERE.parents[1] / "shared"
+
+sys.path.insert(0, str(SHARED))
+import mavlink  # noqa: E402
 
 
 def declarations() -> str:
@@ -41,6 +46,12 @@ def declarations() -> str:
     return re.sub(r"static inline[^{]*\{.*?\n\}", "", "\n".join(kept), flags=re.DOTALL)
 
 
+# For the link's sources alone: no declaration in dockcore.h needs them.
+try:
+    mavlink.generate_c()
+except mavlink.MavlinkError as error:
+    sys.exit(f"error: {error}")
+
 ffi = FFI()
 ffi.cdef(declarations())
 ffi.set_source(
@@ -52,7 +63,7 @@ ffi.set_source(
         for path in [*sorted(DOCKCORE.glob("*.c")), HERE / "hsv_convert.c"]
     ],
     include_dirs=[str(DOCKCORE), str(HERE)],
-    extra_compile_args=["-std=c11", "-O2"],
+    extra_compile_args=["-std=c11", "-O2", "-isystem", str(mavlink.C_HEADERS)],
 )
 
 if __name__ == "__main__":

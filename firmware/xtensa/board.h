@@ -10,7 +10,7 @@ _Noreturn void board_exit(int status);
 _Noreturn void board_fault(uint32_t cause, uint32_t address);
 
 typedef struct {
-    uintptr_t function, argument[3];
+    uintptr_t function, argument[4];
 } stack_call_t;
 
 /* Calls on the stack that ends below `top`; top[0] and top[1] are used too. */

@@ -3,6 +3,7 @@
 #include "board.h"
 #include "console.h"
 #include "instructions.h"
+#include "messages.h"
 #include "vectors.h"
 
 #define FRAME_MS 33 /* 30 Hz: a window full of decisions */
@@ -116,6 +117,63 @@ static void keep_larger(uint32_t *most, uint32_t value)
         *most = value;
 }
 
+/* A message from a host that makes the dock call its deepest. */
+static size_t host_message(uint8_t *bytes, size_t capacity, uint32_t id,
+                           uint8_t crc_extra, const void *payload, uint8_t n)
+{
+    uint8_t sequence = 0;
+    sender_t sender = {bytes, 0, capacity, &sequence};
+    message_send(&sender, id, crc_extra, payload, n);
+    const size_t end = sender.length - 2;
+    bytes[5] = 255; /* not the dock's own address */
+    const uint16_t sum = message_checksum(bytes, end, crc_extra);
+    bytes[end] = (uint8_t)sum;
+    bytes[end + 1] = (uint8_t)(sum >> 8);
+    return sender.length;
+}
+
+#define HOST_MESSAGE(bytes, NAME, payload)                    \
+    host_message(bytes, sizeof(bytes), MAVLINK_MSG_ID_##NAME, \
+                 MAVLINK_MSG_ID_##NAME##_CRC, payload,        \
+                 MAVLINK_MSG_ID_##NAME##_LEN)
+
+/* An injected frame of one packet, which the receiver decides on at once; then
+ * everything that a dock can have to say. */
+static bool print_link_stack(void)
+{
+    static uint8_t buffer[128], out[4096], first[RECEIVER_CAPACITY],
+        second[RECEIVER_CAPACITY];
+    const dock_settings_t settings = dock_default_settings();
+    const dock_board_t board = {1, true, {0}, buffer, sizeof buffer};
+    dock_init(&dock, &settings);
+    dock_set_board(&dock, &board);
+    mavlink_data_transmission_handshake_t handshake = {
+        .size = sizeof buffer,
+        .width = 8,
+        .height = 8,
+        .packets = 1,
+        .type = MAVLINK_DATA_STREAM_IMG_RAW8U,
+        .payload = MAVLINK_MSG_ENCAPSULATED_DATA_FIELD_DATA_LEN};
+    mavlink_encapsulated_data_t packet = {.seqnr = 0, .data = {1, 2, 3}};
+    const uintptr_t at = (uintptr_t)&dock;
+    const size_t n =
+        HOST_MESSAGE(first, DATA_TRANSMISSION_HANDSHAKE, &handshake);
+    const size_t m = HOST_MESSAGE(second, ENCAPSULATED_DATA, &packet);
+    const stack_call_t announce = {(uintptr_t)dock_receive,
+                                   {at, (uintptr_t)first, n, 0}};
+    const stack_call_t deliver = {(uintptr_t)dock_receive,
+                                  {at, (uintptr_t)second, m, 0}};
+    const stack_call_t speak = {(uintptr_t)dock_transmit,
+                                {at, (uintptr_t)out, sizeof out, 0}};
+    uint32_t of_receive = stack_used(&announce);
+    keep_larger(&of_receive, stack_used(&deliver));
+    dock.link.version_due = true;
+    const uint32_t of_transmit = stack_used(&speak);
+    const bool decided = dock.counters.frames == 1; /* or it measured nothing */
+    const bool receive_fits = put_stack("dock_receive", of_receive);
+    return put_stack("dock_transmit", of_transmit) && receive_fits && decided;
+}
+
 bool print_stack(void)
 {
     uint32_t of_init = 0, of_frame = 0, of_duties = 0;
@@ -137,7 +195,7 @@ bool print_stack(void)
     const bool init_fits = put_stack("dock_init", of_init);
     const bool frame_fits = put_stack("dock_frame", of_frame);
     const bool duties_fit = put_stack("dock_led_duties", of_duties);
-    return init_fits && frame_fits && duties_fit;
+    return init_fits && frame_fits && duties_fit && print_link_stack();
 }
 
 void print_memory(void)

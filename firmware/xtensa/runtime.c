@@ -1,4 +1,4 @@
-/* What the compiler calls and nobody provides: three functions of the C
+/* What the compiler calls and nobody provides: some functions of the C
  * library, and the divisions and products that libgcc for lx106 lacks.
  * Compiled so that no loop in here turns into a call of itself. */
 #include <stdint.h>
@@ -44,6 +44,41 @@ int memcmp(const void *a, const void *b, size_t n)
     for (; n > 0; n--, left++, right++)
         if (*left != *right)
             return *left - *right;
+    return 0;
+}
+
+void *memmove(void *to, const void *from, size_t n)
+{
+    uint8_t *out = to;
+    const uint8_t *in = from;
+    if (out <= in)
+        return memcpy(to, from, n); /* goes upwards */
+    while (n-- > 0)
+        out[n] = in[n];
+    return to;
+}
+
+void *memchr(const void *bytes, int byte, size_t n)
+{
+    for (const uint8_t *in = bytes; n > 0; n--, in++)
+        if (*in == (uint8_t)byte)
+            return (void *)(uintptr_t)in;
+    return NULL;
+}
+
+size_t strlen(const char *text)
+{
+    size_t n = 0;
+    while (text[n] != '\0')
+        n++;
+    return n;
+}
+
+int strncmp(const char *a, const char *b, size_t n)
+{
+    for (; n > 0; n--, a++, b++)
+        if (*a != *b || *a == '\0')
+            return (unsigned char)*a - (unsigned char)*b;
     return 0;
 }
 

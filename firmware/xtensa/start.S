@@ -59,7 +59,7 @@ board_write:
     ret
 
 /* void stack_call(uint32_t *top, const stack_call_t *call): calls a function
- * of three arguments on a stack of its own, which ends below `top`. */
+ * of four arguments on a stack of its own, which ends below `top`. */
     .global stack_call
     .type stack_call, @function
     .balign 4
@@ -69,6 +69,7 @@ stack_call:
     mov     a1, a2
     l32i    a7, a3, 0
     l32i    a2, a3, 4
+    l32i    a5, a3, 16
     l32i    a4, a3, 12
     l32i    a3, a3, 8
     callx0  a7

@@ -1,4 +1,4 @@
-"""The whole dock: frames and time in, LED duties out."""
+"""The whole dock: frames, bytes and time in; LED duties, bytes and requests out."""
 
 from __future__ import annotations
 
@@ -13,6 +13,14 @@ MAPPINGS = {
     name.removeprefix(_PREFIX).lower(): getattr(lib, name)
     for name in dir(lib)
     if name.startswith(_PREFIX) and name not in (_PREFIX + "COUNT", _PREFIX + "TURN")
+}
+
+
+_PREFIX = "DOCK_REQUEST_"
+REQUESTS = {
+    getattr(lib, name): name.removeprefix(_PREFIX).lower()
+    for name in dir(lib)
+    if name.startswith(_PREFIX) and name != _PREFIX + "NONE"
 }
 
 
@@ -46,9 +54,16 @@ class Settings:
 class Dock:
     """A dock in memory of its own; any number may run side by side."""
 
-    def __init__(self, settings: Settings | None = None) -> None:
+    def __init__(self, settings: Settings | None = None, blob: bytes | None = None) -> None:
+        """Start it with ``settings``, or with those of a ``blob`` from flash.
+
+        A blob that is not valid leaves ``settings`` and sets ``settings_corrupt``.
+        """
         self.c: Any = ffi.new("dock_t *")
-        lib.dock_init(self.c, ffi.new("dock_settings_t *", (settings or Settings()).to_c()))
+        c = ffi.new("dock_settings_t *", (settings or Settings()).to_c())
+        self.settings_corrupt = blob is not None and not lib.settings_from_blob(c, blob, len(blob))
+        self._buffer: Any = ffi.NULL
+        lib.dock_init(self.c, c)
 
     def frame(self, data: bytes | None, width: int, height: int, fmt: str, now_ms: int) -> None:
         """A camera frame (``fmt`` ``rgb565`` or ``rgb888``), or None: a camera fault.
@@ -57,6 +72,51 @@ class Dock:
         """
         frame = ffi.NULL if data is None else c_frame(data, width, height, fmt)
         lib.dock_frame(self.c, frame, now_ms & 0xFFFFFFFF)
+
+    def set_board(
+        self, git_hash: bytes = b"", reset_reason: int = 0, capacity: int = lib.DOCK_IMAGE_BYTES
+    ) -> None:
+        """What the board knows of itself.
+
+        ``git_hash`` has at most 8 letters; ``capacity`` is the room in bytes for a snapshot
+        or an injected frame.
+        """
+        self._buffer = ffi.new("uint8_t[]", capacity) if capacity else ffi.NULL
+        board = ffi.new("dock_board_t *")
+        board.reset_reason = reset_reason
+        board.settings_corrupt = self.settings_corrupt
+        board.git_hash = git_hash.ljust(8, b"\0")
+        board.buffer = self._buffer
+        board.capacity = capacity
+        lib.dock_set_board(self.c, board)
+
+    def set_camera(self, exposure: int, gain: int, locked: bool) -> None:
+        """What the sensor is set to: ``exposure`` in lines, ``gain`` in its own units."""
+        lib.dock_set_camera(self.c, ffi.new("dock_camera_t *", (exposure, gain, locked)))
+
+    def receive(self, data: bytes, now_ms: int) -> None:
+        """Bytes from the host, in any pieces, with anything between the messages."""
+        lib.dock_receive(self.c, data, len(data), now_ms & 0xFFFFFFFF)
+
+    def transmit(self, capacity: int, now_ms: int) -> bytes:
+        """Bytes for the host: as many whole messages as fit into ``capacity``."""
+        out = ffi.new("uint8_t[]", capacity)
+        n = lib.dock_transmit(self.c, out, capacity, now_ms & 0xFFFFFFFF)
+        return bytes(ffi.buffer(out, n))
+
+    def take_request(self) -> str | None:
+        """``save``, ``camera``, ``reboot``: what only the board can do, once; or None."""
+        return REQUESTS.get(lib.dock_take_request(self.c))
+
+    def saved(self, written: bool) -> None:
+        """Answer to ``save``: whether the settings are in flash now."""
+        lib.dock_saved(self.c, written)
+
+    def settings_blob(self) -> bytes:
+        """The settings as flash holds them."""
+        blob = ffi.new("uint8_t[]", lib.SETTINGS_BLOB_BYTES)
+        lib.settings_to_blob(ffi.addressof(self.c.settings), blob)
+        return bytes(ffi.buffer(blob))
 
     @property
     def duties(self) -> tuple[int, int, int]:

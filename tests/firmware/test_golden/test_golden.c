@@ -90,7 +90,7 @@ static void a_frame_gives_its_golden_values(void)
         marker_hue(&background, golden->mapping, METHOD_FALLBACK_HUE);
     TEST_ASSERT_EQUAL_UINT16_MESSAGE(golden->marker_hue, hue, "marker hue");
 
-    const led_settings_t led = led_default_settings();
+    const led_settings_t led = dock_default_settings().led;
     uint16_t duties[3];
     led_duties(duties, hue, &led);
     TEST_ASSERT_EQUAL_UINT16_ARRAY_MESSAGE(golden->duties, duties, 3, "duties");

@@ -1,5 +1,6 @@
 /* From a hue to the duties of an LED: colour, offset, gamma, polarity. */
 #include "led_fixture.h"
+#include "settings.h"
 #include "suite.h"
 
 static void test_a_pure_hue_lights_its_own_channel_solid(void)
@@ -92,7 +93,7 @@ static void test_offsets_come_before_gamma(void)
 
 static void test_the_defaults_are_those_of_the_board(void)
 {
-    const led_settings_t defaults = led_default_settings();
+    const led_settings_t defaults = dock_default_settings().led;
 
     TEST_ASSERT_TRUE(led_settings_are_valid(&defaults));
     assert_duties(0, 4096 - 899, 4096, ORANGE, defaults);

@@ -10,6 +10,8 @@
 #include "led.h"
 #include "marker.h"
 #include "method.h"
+#include "parameter_table.h"
+#include "real32.h"
 #include "rolling.h"
 #include "working_image.h"
 

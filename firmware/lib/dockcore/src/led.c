@@ -7,17 +7,6 @@ static int64_t clamp(int64_t value, int64_t least, int64_t most)
     return value < least ? least : value > most ? most : value;
 }
 
-led_settings_t led_default_settings(void)
-{
-    const int16_t unit = METHOD_MATRIX_UNIT;
-    return (led_settings_t){
-        .matrix = {unit, 0, 0, 0, unit, 0, 0, 0, unit},
-        .gamma = METHOD_DEFAULT_GAMMA,
-        .limit = 255,
-        .common_anode = true,
-    };
-}
-
 bool led_settings_are_valid(const led_settings_t *settings)
 {
     for (int i = 0; i < 3; i++)
@@ -35,8 +24,11 @@ static uint32_t mix(const int16_t row[3], const uint16_t light[3])
     return (uint32_t)clamp(sum / METHOD_MATRIX_UNIT, 0, UINT16_MAX);
 }
 
-static uint16_t with_polarity(uint32_t duty, const led_settings_t *settings)
+/* Duty of linear light 0..65535, as bright as the limit allows. */
+static uint16_t duty_of(uint32_t light, const led_settings_t *settings)
 {
+    const uint32_t limited = (light * settings->limit + 127) / 255;
+    const uint32_t duty = (limited * LED_FULL + UINT16_MAX / 2) / UINT16_MAX;
     return (uint16_t)(settings->common_anode ? LED_FULL - duty : duty);
 }
 
@@ -48,17 +40,19 @@ void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings)
     uint16_t light[3];
     for (int i = 0; i < 3; i++)
         light[i] = decode[clamp(code[i] + settings->offset[i], 0, 255)];
-    for (int i = 0; i < 3; i++) {
-        const uint32_t mixed = mix(settings->matrix + 3 * i, light);
-        const uint32_t limited = (mixed * settings->limit + 127) / 255;
-        const uint32_t scaled =
-            (limited * LED_FULL + UINT16_MAX / 2) / UINT16_MAX;
-        duty[i] = with_polarity(scaled, settings);
-    }
+    for (int i = 0; i < 3; i++)
+        duty[i] = duty_of(mix(settings->matrix + 3 * i, light), settings);
+}
+
+void led_raw_duties(uint16_t duty[3], const uint8_t light[3],
+                    const led_settings_t *settings)
+{
+    for (int i = 0; i < 3; i++)
+        duty[i] = duty_of(light[i] * UINT32_C(257), settings);
 }
 
 void led_dark(uint16_t duty[3], const led_settings_t *settings)
 {
     for (int i = 0; i < 3; i++)
-        duty[i] = with_polarity(0, settings);
+        duty[i] = duty_of(0, settings);
 }

@@ -19,13 +19,16 @@ typedef struct {
     bool common_anode; /* the pin pulls the LED's cathode low: duty inverted */
 } led_settings_t;
 
-led_settings_t led_default_settings(void);
-
 bool led_settings_are_valid(const led_settings_t *settings);
 
 /* Duties 0..LED_FULL of a pure colour: offset, gamma decoding, 3 x 3 matrix,
  * limit, polarity. */
 void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings);
+
+/* Duties of 8-bit light levels R, G, B: limit and polarity only, for testing
+ * one channel at a time. */
+void led_raw_duties(uint16_t duty[3], const uint8_t light[3],
+                    const led_settings_t *settings);
 
 /* Duties that leave the LED dark. */
 void led_dark(uint16_t duty[3], const led_settings_t *settings);

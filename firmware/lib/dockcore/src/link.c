@@ -1,0 +1,71 @@
+#include "link.h"
+
+#include "link_parts.h"
+
+typedef void handler_t(dock_t *dock, const received_t *message,
+                       uint32_t now_ms);
+
+/* Every message that the dock reads. */
+static const struct {
+    uint32_t id;
+    uint8_t crc_extra;
+    handler_t *handler;
+} handlers[] = {
+#define HANDLE(NAME, handler) \
+    {MAVLINK_MSG_ID_##NAME, MAVLINK_MSG_ID_##NAME##_CRC, handler}
+    HANDLE(PARAM_REQUEST_LIST, link_on_parameter_list),
+    HANDLE(PARAM_REQUEST_READ, link_on_parameter_read),
+    HANDLE(PARAM_SET, link_on_parameter_set),
+    HANDLE(COMMAND_LONG, link_on_command),
+    HANDLE(DATA_TRANSMISSION_HANDSHAKE, link_on_handshake),
+    HANDLE(ENCAPSULATED_DATA, link_on_packet),
+#undef HANDLE
+};
+
+#define HANDLERS (sizeof handlers / sizeof handlers[0])
+
+static int crc_extra(uint32_t id)
+{
+    for (size_t i = 0; i < HANDLERS; i++)
+        if (handlers[i].id == id)
+            return handlers[i].crc_extra;
+    return -1;
+}
+
+static void handle(dock_t *dock, const received_t *message, uint32_t now_ms)
+{
+    for (size_t i = 0; i < HANDLERS; i++)
+        if (handlers[i].id == message->id)
+            handlers[i].handler(dock, message, now_ms);
+}
+
+void dock_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
+{
+    receiver_t *receiver = &dock->link.receiver;
+    do {
+        const size_t taken = receiver_put(receiver, bytes, n, now_ms);
+        n -= taken;
+        if (n > 0)
+            bytes += taken;
+        received_t message;
+        while (receiver_next(receiver, crc_extra, &message)) {
+            /* Only a ground station or a vehicle talks to a dock. */
+            if (message.system != DOCK_ID_SYSTEM)
+                handle(dock, &message, now_ms);
+            receiver_done(receiver, &message);
+        }
+    } while (n > 0);
+}
+
+size_t dock_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
+                     uint32_t now_ms)
+{
+    sender_t sender = {bytes, 0, capacity, &dock->link.sequence};
+    dock_receive(dock, NULL, 0, now_ms);
+    /* Answers first, bulk last: each stops at what does not fit any more. */
+    if (link_send_acks(dock, &sender) && link_send_texts(dock, &sender) &&
+        link_send_reports(dock, &sender, now_ms) &&
+        link_send_parameters(dock, &sender))
+        link_send_snapshot(dock, &sender);
+    return sender.length;
+}

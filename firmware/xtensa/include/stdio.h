@@ -1,0 +1,1 @@
+/* Empty: mavgen's headers include it and use nothing of it. */

@@ -1,0 +1,215 @@
+#include "camera.h"
+
+#include "clock.h"
+
+camera_report_t Camera::report(camera_event_t event, camera_fb_t *frame) const
+{
+    camera_report_t report = {};
+    report.event = event;
+    report.frame = frame;
+    report.camera.exposure = values.exposure;
+    report.camera.gain = values.gain;
+    report.camera.locked = locked;
+    return report;
+}
+
+camera_report_t Camera::report_no_camera()
+{
+    if (!fault_due && clock_ms() - fault_ms < CAMERA_FAULT_MS)
+        return report(CAMERA_NOTHING, nullptr);
+    fault_due = false;
+    fault_ms = clock_ms();
+    return report(CAMERA_FAULT, nullptr);
+}
+
+camera_report_t Camera::step(const camera_order_t &order)
+{
+    if (order.pause) {
+        pause();
+        return report(CAMERA_PAUSED, nullptr);
+    }
+    resume();
+    if (state == WITHOUT) {
+        if (backoff.due(clock_ms()))
+            start(order);
+    } else if (order.serial != serial) {
+        apply(order);
+    } else if (state == RUNNING) {
+        look_after_sensor();
+    }
+    if (state == WITHOUT)
+        return report_no_camera();
+
+    camera_fb_t *frame = esp_camera_fb_get();
+    if (frame == nullptr) {
+        fail();
+    } else if (state == RUNNING && skip == 0 && !is_stale(*frame)) {
+        backoff.succeed();
+        return report(CAMERA_FRAME, frame);
+    } else {
+        drop(frame);
+    }
+    return state == WITHOUT ? report_no_camera()
+                            : report(CAMERA_NOTHING, nullptr);
+}
+
+void Camera::release(const camera_report_t &report)
+{
+    if (report.frame != nullptr)
+        esp_camera_fb_return(report.frame);
+}
+
+bool Camera::is_stale(const camera_fb_t &frame) const
+{
+    const int64_t began_us =
+        int64_t{1000000} * frame.timestamp.tv_sec + frame.timestamp.tv_usec;
+    return began_us < fresh_us;
+}
+
+/* A frame that is not for the dock. */
+void Camera::drop(camera_fb_t *frame)
+{
+    const bool stale = is_stale(*frame);
+    esp_camera_fb_return(frame);
+    if (stale)
+        return;
+    if (skip > 0)
+        --skip;
+    else if (state == SETTLING && settling.frame(clock_ms()))
+        run();
+}
+
+void Camera::start(const camera_order_t &order)
+{
+    const esp_err_t error = camera_power_up();
+    sensor = error == ESP_OK ? esp_camera_sensor_get() : nullptr;
+    if (sensor == nullptr) {
+        fail();
+        return;
+    }
+    if (order.serial != serial)
+        adopt(order);
+    /* A sensor that starts is automatic: with the values known, and a white
+     * balance that can be set, its frames need not be waited for. */
+    settle(settings.lock == 0 || sensor_values_are_given(settings) ||
+           (lock_at_known && sensor_white_balance_is_given(settings)));
+}
+
+void Camera::adopt(const camera_order_t &order)
+{
+    settings = order.settings;
+    serial = order.serial;
+    lock_at_known = false;
+}
+
+void Camera::apply(const camera_order_t &order)
+{
+    adopt(order);
+    if (state == RUNNING && settings.lock != 0 &&
+        sensor_values_are_given(settings)) {
+        lock();
+        return;
+    }
+    locked = false;
+    if (sensor_release(sensor) != SENSOR_OK)
+        fail();
+    else if (state == RUNNING && settings.lock == 0)
+        run();
+    else
+        settle(settings.lock == 0);
+}
+
+void Camera::settle(bool only_first_frames)
+{
+    state = SETTLING;
+    settling.begin(clock_ms(), only_first_frames);
+    fresh_us = clock_us();
+    skip = 0;
+}
+
+void Camera::run()
+{
+    if (settings.lock != 0) {
+        lock();
+        return;
+    }
+    state = RUNNING;
+    values = sensor_read(sensor);
+    read_ms = clock_ms();
+    fresh_us = clock_us();
+    skip = CAMERA_FRAMES_AFTER_A_CHANGE;
+}
+
+void Camera::lock()
+{
+    const sensor_result_t result = sensor_lock(
+        sensor, settings, lock_at_known ? &lock_at : nullptr, &values);
+    if (result == SENSOR_FAILED) {
+        fail();
+        return;
+    }
+    /* One that reads back something else delivers frames all the same; the
+     * dock reports that they are of an unlocked camera. */
+    locked = result == SENSOR_OK;
+    if (locked) {
+        lock_at = values;
+        lock_at_known = true;
+    }
+    state = RUNNING;
+    read_ms = clock_ms();
+    fresh_us = clock_us();
+    skip = CAMERA_FRAMES_AFTER_A_CHANGE;
+}
+
+/* Once a second: what does it use now, and has it lost its lock? */
+void Camera::look_after_sensor()
+{
+    if (clock_ms() - read_ms < CAMERA_READ_MS)
+        return;
+    read_ms = clock_ms();
+    values = sensor_read(sensor);
+    if (settings.lock == 0)
+        return;
+    if (!locked || values.exposure != lock_at.exposure ||
+        values.gain != lock_at.gain || sensor->status.aec != 0 ||
+        sensor->status.agc != 0)
+        lock();
+}
+
+/* With every buffer in hand the driver has nothing to fill: it stops after the
+ * frame that it is at, and the last one comes only then. */
+void Camera::pause()
+{
+    while (state != WITHOUT && held_count < CAMERA_BUFFERS) {
+        camera_fb_t *frame = esp_camera_fb_get();
+        if (frame == nullptr)
+            fail();
+        else
+            held[held_count++] = frame;
+    }
+}
+
+void Camera::resume()
+{
+    if (held_count == 0)
+        return;
+    give_back();
+    fresh_us = clock_us();
+}
+
+void Camera::give_back()
+{
+    while (held_count > 0)
+        esp_camera_fb_return(held[--held_count]);
+}
+
+void Camera::fail()
+{
+    give_back();
+    camera_power_down();
+    sensor = nullptr;
+    locked = false;
+    state = WITHOUT;
+    fault_due = true;
+    backoff.fail(clock_ms());
+}

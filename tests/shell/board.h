@@ -1,0 +1,466 @@
+/* A board that records what the firmware does to it, and fails on request.
+ *
+ * It defines the vendor's functions, so a suite includes it once. Time passes
+ * only in the calls that wait. */
+#ifndef BOARD_H
+#define BOARD_H
+
+#include <unity.h>
+
+#include <deque>
+#include <functional>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <string>
+#include <vector>
+
+#include <Arduino.h>
+#include <driver/gpio.h>
+#include <driver/ledc.h>
+#include <driver/uart.h>
+#include <esp_camera.h>
+#include <esp_system.h>
+#include <esp_task_wdt.h>
+#include <esp_timer.h>
+#include <freertos/FreeRTOS.h>
+#include <freertos/queue.h>
+#include <freertos/task.h>
+#include <nvs.h>
+#include <nvs_flash.h>
+
+enum { FOREVER = -1, GRAB_TIMEOUT_MS = 4000 };
+
+/* What esp_restart throws, which does not return. */
+struct Restarted {};
+
+struct FakeSensor {
+    sensor_t driver;
+    /* What its registers hold. */
+    int exposure, gain;
+    bool auto_exposure, auto_gain, auto_white;
+    int preset;
+    int settled_exposure, settled_gain; /* what the automatic loops find */
+    bool deaf;                          /* takes commands, keeps its values */
+    std::string broken;                 /* the command that it does not take */
+    int changed_gains; /* added to the white balance gains read back */
+};
+
+struct FakeBuffer {
+    camera_fb_t driver;
+    bool out;
+};
+
+struct FakeBoard {
+    std::vector<std::string> log;
+    int64_t us;
+
+    std::deque<int> init_errors; /* of the next starts of the camera */
+    int init_always;             /* of all later ones */
+    int grabs_to_fail;
+    int frame_ms;
+    int64_t frame_age_us; /* of a frame when it is grabbed */
+    bool camera_on;
+    FakeBuffer buffers[2];
+    camera_config_t camera_config;
+    FakeSensor sensor;
+    uint8_t pixels[160 * 120 * 2];
+
+    int level[40], direction[40], pull[40];
+    ledc_timer_config_t timer;
+    ledc_channel_config_t channel[LEDC_CHANNEL_MAX];
+    uint32_t duty[LEDC_CHANNEL_MAX], new_duty[LEDC_CHANNEL_MAX];
+
+    esp_err_t flash_error, open_error, get_error, set_error, commit_error;
+    bool stored;
+    std::string blob;
+    int handles_open;
+
+    uart_config_t uart;
+    std::string received, sent;
+    uint32_t fifo; /* bytes taken in one go */
+    bool wire_idle;
+
+    uint32_t watchdog_ms;
+    bool watchdog_panics, watchdog_watching, watchdog_started;
+    int feeds;
+
+    std::function<void()> while_waiting;
+    TaskFunction_t task;
+    int task_core;
+};
+
+static FakeBoard board;
+
+inline void note(const std::string &what)
+{
+    board.log.push_back(what);
+}
+
+inline void note(const std::string &what, long a)
+{
+    note(what + " " + std::to_string(a));
+}
+
+inline void note(const std::string &what, long a, long b)
+{
+    note(what + " " + std::to_string(a), b);
+}
+
+inline void pass_ms(int64_t ms)
+{
+    board.us += 1000 * ms;
+}
+
+inline int count_in_log(const std::string &what)
+{
+    int count = 0;
+    for (const std::string &line : board.log)
+        count += line == what;
+    return count;
+}
+
+/* Where it stands first, from 0; -1: not there. */
+inline int place_in_log(const std::string &what, int from = 0)
+{
+    for (size_t i = static_cast<size_t>(from); i < board.log.size(); i++)
+        if (board.log[i] == what)
+            return static_cast<int>(i);
+    return -1;
+}
+
+/* These lines, in this order, with anything between them. */
+inline void assert_in_order(const std::vector<std::string> &lines)
+{
+    int place = 0;
+    for (const std::string &line : lines) {
+        place = place_in_log(line, place);
+        TEST_ASSERT_TRUE_MESSAGE(place >= 0, line.c_str());
+        ++place;
+    }
+}
+
+extern "C" {
+
+int64_t esp_timer_get_time(void)
+{
+    return board.us;
+}
+
+void esp_restart(void)
+{
+    note("esp_restart");
+    throw Restarted();
+}
+
+esp_reset_reason_t esp_reset_reason(void)
+{
+    return ESP_RST_BROWNOUT;
+}
+
+esp_err_t gpio_set_level(gpio_num_t pin, uint32_t level)
+{
+    note("gpio_set_level", pin, static_cast<long>(level));
+    board.level[pin] = static_cast<int>(level);
+    return ESP_OK;
+}
+
+esp_err_t gpio_set_direction(gpio_num_t pin, gpio_mode_t mode)
+{
+    note("gpio_set_direction", pin, mode);
+    board.direction[pin] = mode;
+    return ESP_OK;
+}
+
+esp_err_t gpio_set_pull_mode(gpio_num_t pin, gpio_pull_mode_t pull)
+{
+    board.pull[pin] = pull;
+    return ESP_OK;
+}
+
+esp_err_t ledc_timer_config(const ledc_timer_config_t *timer)
+{
+    note("ledc_timer_config");
+    board.timer = *timer;
+    return ESP_OK;
+}
+
+esp_err_t ledc_channel_config(const ledc_channel_config_t *channel)
+{
+    note("ledc_channel_config", channel->channel);
+    board.channel[channel->channel] = *channel;
+    board.duty[channel->channel] = channel->duty;
+    return ESP_OK;
+}
+
+esp_err_t ledc_set_duty(ledc_mode_t, ledc_channel_t channel, uint32_t duty)
+{
+    note("ledc_set_duty", channel, static_cast<long>(duty));
+    board.new_duty[channel] = duty;
+    return ESP_OK;
+}
+
+esp_err_t ledc_update_duty(ledc_mode_t, ledc_channel_t channel)
+{
+    board.duty[channel] = board.new_duty[channel];
+    return ESP_OK;
+}
+
+esp_err_t nvs_flash_init(void)
+{
+    note("nvs_flash_init");
+    const esp_err_t error = board.flash_error;
+    board.flash_error = ESP_OK;
+    return error;
+}
+
+esp_err_t nvs_flash_erase(void)
+{
+    note("nvs_flash_erase");
+    board.stored = false;
+    return ESP_OK;
+}
+
+esp_err_t nvs_open(const char *name, nvs_open_mode_t mode, nvs_handle_t *handle)
+{
+    note(std::string("nvs_open ") + name);
+    if (board.open_error != ESP_OK)
+        return board.open_error;
+    if (mode == NVS_READONLY && !board.stored)
+        return ESP_ERR_NVS_NOT_FOUND;
+    ++board.handles_open;
+    *handle = 7;
+    return ESP_OK;
+}
+
+esp_err_t nvs_get_blob(nvs_handle_t, const char *key, void *value,
+                       size_t *length)
+{
+    note(std::string("nvs_get_blob ") + key);
+    if (board.get_error != ESP_OK)
+        return board.get_error;
+    if (*length < board.blob.size())
+        return ESP_ERR_NVS_INVALID_LENGTH;
+    *length = board.blob.size();
+    memcpy(value, board.blob.data(), board.blob.size());
+    return ESP_OK;
+}
+
+esp_err_t nvs_set_blob(nvs_handle_t, const char *key, const void *value,
+                       size_t length)
+{
+    note(std::string("nvs_set_blob ") + key);
+    if (board.set_error != ESP_OK)
+        return board.set_error;
+    board.blob.assign(static_cast<const char *>(value), length);
+    board.stored = true;
+    return ESP_OK;
+}
+
+esp_err_t nvs_commit(nvs_handle_t)
+{
+    note("nvs_commit");
+    return board.commit_error;
+}
+
+void nvs_close(nvs_handle_t)
+{
+    --board.handles_open;
+}
+
+esp_err_t uart_driver_install(uart_port_t, int receive_bytes, int, int,
+                              QueueHandle_t *, int)
+{
+    note("uart_driver_install");
+    /* The driver refuses a ring that is no longer than the hardware's FIFO. */
+    TEST_ASSERT_GREATER_THAN(128, receive_bytes);
+    return ESP_OK;
+}
+
+esp_err_t uart_param_config(uart_port_t, const uart_config_t *config)
+{
+    board.uart = *config;
+    return ESP_OK;
+}
+
+esp_err_t uart_set_pin(uart_port_t, int tx, int rx, int, int)
+{
+    note("uart_set_pin", tx, rx);
+    return ESP_OK;
+}
+
+int uart_read_bytes(uart_port_t, void *buffer, uint32_t length, TickType_t wait)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, wait);
+    const size_t n =
+        board.received.size() < length ? board.received.size() : length;
+    memcpy(buffer, board.received.data(), n);
+    board.received.erase(0, n);
+    return static_cast<int>(n);
+}
+
+int uart_tx_chars(uart_port_t, const char *buffer, uint32_t length)
+{
+    const uint32_t n = length < board.fifo ? length : board.fifo;
+    board.sent.append(buffer, n);
+    return static_cast<int>(n);
+}
+
+esp_err_t uart_wait_tx_done(uart_port_t, TickType_t wait)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, wait);
+    return board.wire_idle ? ESP_OK : ESP_ERR_TIMEOUT;
+}
+
+#if ESP_IDF_VERSION_MAJOR >= 5
+inline void take_watchdog(const esp_task_wdt_config_t *config)
+{
+    board.watchdog_ms = config->timeout_ms;
+    board.watchdog_panics = config->trigger_panic;
+}
+
+esp_err_t esp_task_wdt_init(const esp_task_wdt_config_t *config)
+{
+    note("esp_task_wdt_init");
+    if (board.watchdog_started)
+        return ESP_ERR_INVALID_STATE;
+    take_watchdog(config);
+    board.watchdog_started = true;
+    return ESP_OK;
+}
+
+esp_err_t esp_task_wdt_reconfigure(const esp_task_wdt_config_t *config)
+{
+    note("esp_task_wdt_reconfigure");
+    if (!board.watchdog_started)
+        return ESP_ERR_INVALID_STATE;
+    TEST_ASSERT_EQUAL_UINT32(1, config->idle_core_mask);
+    take_watchdog(config);
+    return ESP_OK;
+}
+#else
+esp_err_t esp_task_wdt_init(uint32_t timeout, bool panic)
+{
+    note("esp_task_wdt_init");
+    board.watchdog_ms = 1000 * timeout;
+    board.watchdog_panics = panic;
+    return ESP_OK;
+}
+#endif
+
+esp_err_t esp_task_wdt_add(TaskHandle_t task)
+{
+    note("esp_task_wdt_add");
+    board.watchdog_watching = task == nullptr;
+    return ESP_OK;
+}
+
+esp_err_t esp_task_wdt_reset(void)
+{
+    ++board.feeds;
+    return ESP_OK;
+}
+
+TaskHandle_t xTaskCreateStaticPinnedToCore(TaskFunction_t code, const char *,
+                                           uint32_t, void *, UBaseType_t,
+                                           StackType_t *, StaticTask_t *,
+                                           BaseType_t core)
+{
+    note("xTaskCreateStaticPinnedToCore");
+    board.task = code;
+    board.task_core = core;
+    return nullptr;
+}
+
+void vTaskDelay(TickType_t ticks)
+{
+    pass_ms(ticks);
+}
+
+/* A queue of one element. */
+struct QueueDefinition {
+    uint8_t *storage;
+    size_t size;
+    bool full;
+};
+
+QueueHandle_t xQueueGenericCreateStatic(UBaseType_t length, UBaseType_t size,
+                                        uint8_t *storage, StaticQueue_t *state,
+                                        uint8_t)
+{
+    static_assert(sizeof(QueueDefinition) <= sizeof(StaticQueue_t), "room");
+    TEST_ASSERT_EQUAL_UINT(1, length);
+    QueueHandle_t queue = reinterpret_cast<QueueHandle_t>(state);
+    queue->storage = storage;
+    queue->size = size;
+    queue->full = false;
+    return queue;
+}
+
+BaseType_t xQueueGenericSend(QueueHandle_t queue, const void *item,
+                             TickType_t wait, BaseType_t position)
+{
+    if (queue->full && position != queueOVERWRITE) {
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, wait, "would wait for ever");
+        return pdFALSE;
+    }
+    memcpy(queue->storage, item, queue->size);
+    queue->full = true;
+    return pdTRUE;
+}
+
+/* Who waits without end lets the other task work. */
+inline void wait_until_full(QueueHandle_t queue, TickType_t wait)
+{
+    for (int turns = 0; wait == portMAX_DELAY && !queue->full; turns++) {
+        TEST_ASSERT_TRUE_MESSAGE(board.while_waiting && turns < 100,
+                                 "would wait for ever");
+        board.while_waiting();
+    }
+    if (!queue->full)
+        pass_ms(wait);
+}
+
+BaseType_t xQueuePeek(QueueHandle_t queue, void *item, TickType_t wait)
+{
+    wait_until_full(queue, wait);
+    if (!queue->full)
+        return pdFALSE;
+    memcpy(item, queue->storage, queue->size);
+    return pdTRUE;
+}
+
+BaseType_t xQueueReceive(QueueHandle_t queue, void *item, TickType_t wait)
+{
+    const BaseType_t got = xQueuePeek(queue, item, wait);
+    queue->full = false;
+    return got;
+}
+
+} /* extern "C" */
+
+/* Unity leaves a test that failed by a jump over its destructors. What leaks is
+ * the suite's: the firmware's shell allocates nothing. */
+extern "C" const char *__asan_default_options()
+{
+    return "detect_leaks=0";
+}
+
+#include "fake_camera.h"
+
+/* A board that nobody has touched, with everything in order. */
+inline void board_reset()
+{
+    board = FakeBoard();
+    board.frame_ms = 80;
+    board.frame_age_us = 40000;
+    board.sensor.settled_exposure = 300;
+    board.sensor.settled_gain = 5;
+    board.fifo = 128;
+    board.wire_idle = true;
+    board.watchdog_started = true;
+    /* Not at 0: a board that starts has run its loader. */
+    board.us = 500000;
+}
+
+#endif

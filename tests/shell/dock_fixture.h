@@ -1,0 +1,68 @@
+/* The whole firmware on the fake board: both tasks, turn by turn. */
+#ifndef DOCK_FIXTURE_H
+#define DOCK_FIXTURE_H
+
+#include "camera_fixture.h"
+
+/* DOCK_FAULT_SETTINGS and DOCK_FAULT_STORAGE of shared/chromadock.xml. */
+enum { FAULT_SETTINGS = 4, FAULT_STORAGE = 8 };
+
+inline void store_settings(const dock_settings_t &settings)
+{
+    uint8_t blob[SETTINGS_BLOB_BYTES];
+    settings_to_blob(&settings, blob);
+    board.blob.assign(reinterpret_cast<const char *>(blob), sizeof blob);
+    board.stored = true;
+}
+
+/* Pure green water: the marker is blue. */
+inline void paint_water()
+{
+    for (size_t i = 0; i < sizeof board.pixels; i += 2) {
+        board.pixels[i] = 0x07;
+        board.pixels[i + 1] = 0xE0;
+    }
+}
+
+/* Power on, to the end of setup(), on the board as it has been prepared. */
+inline void start_dock()
+{
+    camera = Camera();
+    colour = Loop(&dock);
+    board.while_waiting = loop;
+    setup();
+}
+
+inline void start_fresh_dock()
+{
+    board_reset();
+    paint_water();
+    start_dock();
+}
+
+inline void turn_both()
+{
+    camera_turn();
+    loop();
+}
+
+inline void run_for(int64_t ms)
+{
+    const int64_t end = now_ms() + ms;
+    while (now_ms() < end)
+        turn_both();
+}
+
+inline void run_to_first_frame()
+{
+    while (!dock.decided && now_ms() < 60000)
+        turn_both();
+    TEST_ASSERT_TRUE(dock.decided);
+}
+
+inline void request(dock_request_t what)
+{
+    dock.requests |= static_cast<uint8_t>(1u << what);
+}
+
+#endif

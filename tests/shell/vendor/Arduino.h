@@ -1,0 +1,10 @@
+/* Arduino core for the ESP32, 2.0.17 and 3.3: what calls the firmware. */
+#ifndef ARDUINO_H
+#define ARDUINO_H
+
+#define ARDUINO_RUNNING_CORE 1
+
+void setup(void);
+void loop(void);
+
+#endif

@@ -14,6 +14,7 @@ import typer
 
 from chromadock.cli.demo import demo
 from chromadock.cli.detect import detect
+from chromadock.cli.dock import dock
 from chromadock.errors import ChromadockError
 from chromadock.quiet import quiet_libraries
 from chromadock.text import one_line
@@ -34,6 +35,7 @@ app = typer.Typer(
 )
 app.command("detect")(detect)
 app.command("demo")(demo)
+app.add_typer(dock, name="dock")
 
 
 def _show_version(wanted: bool) -> None:

@@ -1,0 +1,190 @@
+"""The board around the core, simulated: camera, flash, resets, serial port text."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from chromadock.errors import ChromadockError
+from chromadock.link.rgb565 import HEIGHT, WIDTH
+from chromadock.simulated.camera import Camera
+from chromadock.simulated.damage import Damage
+from chromadock.simulated.faults import Fault
+from chromadock.simulated.storage import Storage
+from chromadock.simulated.texts import DRIVER, POWER_ON, RESET_REASONS, SOFTWARE, boot_text
+
+GIT_HASH = b"simulate"
+BOOT_S = 0.1
+SETTLE_S = 0.5
+"""From the start to locked exposure, gain and white balance; a board takes seconds."""
+GRAB_TIMEOUT_S = 4.0
+"""The camera driver's own."""
+SETTLED_EXPOSURE, SETTLED_GAIN = 300, 4
+_TEXT_PERIOD_S = 0.5
+_NOISE_BYTES = 256
+_CHUNK = 1024
+
+
+class SimulatedDock:
+    """Time enters as seconds since any moment, the same for all calls, never backwards.
+
+    Parameters
+    ----------
+    camera
+        Where frames come from.
+    fps
+        Frames a second, above 0.
+    settings
+        File that holds the settings over restarts; None: in memory.
+    faults
+        What goes wrong, and when.
+    seed
+        Of noise and damaged bytes: the same ones every time.
+
+    Raises
+    ------
+    ChromadockError
+        Where the firmware's package is missing, or ``settings`` cannot be read.
+    """
+
+    def __init__(
+        self,
+        camera: Camera,
+        fps: float = 10.0,
+        settings: Path | None = None,
+        faults: Sequence[Fault] = (),
+        seed: int = 0,
+        now_s: float = 0.0,
+    ) -> None:
+        self._camera = camera
+        self._period_s = 1 / fps
+        self._storage = Storage(settings)
+        self._random = random.Random(seed)
+        share = max((f.share for f in faults), default=0.0)
+        self._damage_in = Damage(share, random.Random(seed + 1))
+        self._damage_out = Damage(share, random.Random(seed + 2))
+        self._start_s = now_s
+        self._lasting = [f for f in faults if f.kind in ("camera-lost", "driver-text", "storage")]
+        self._once = sorted(
+            (f for f in faults if f not in self._lasting and f.kind != "corrupt"),
+            key=lambda f: f.at_s,
+        )
+        self._text = b""
+        self._text_due_s = now_s
+        self._boot(POWER_ON, now_s)
+
+    @property
+    def duties(self) -> tuple[int, int, int]:
+        """PWM duties R, G, B as on the pins."""
+        r, g, b = self._core.duties
+        return int(r), int(g), int(b)
+
+    def next_due_s(self) -> float:
+        """When ``step`` has something to do again, at the latest."""
+        return self._frame_due_s
+
+    def step(self, now_s: float) -> None:
+        """Everything that is due by the clock.
+
+        Raises
+        ------
+        ChromadockError
+            Where the source of frames breaks off.
+        """
+        while self._once and now_s - self._start_s >= self._once[0].at_s:
+            self._begin(self._once.pop(0).kind, now_s)
+        if self._reboot_wanted:
+            self._boot(SOFTWARE, now_s)
+        if now_s >= self._frame_due_s:
+            self._grab(now_s)
+        if not self._locked and now_s >= self._locked_at_s:
+            self._lock()
+        while (request := self._core.take_request()) is not None:
+            self._obey(request, now_s)
+
+    def receive(self, data: bytes, now_s: float) -> None:
+        """Bytes from the host."""
+        if now_s >= self._ready_s:
+            self._core.receive(self._damage_in.apply(data), self._ms(now_s))
+
+    def transmit(self, now_s: float) -> bytes:
+        """Bytes for the host, whole messages and whatever text comes between or into them."""
+        text, self._text = self._text, b""
+        if now_s < self._ready_s:
+            return self._damage_out.apply(text)
+        data = self._core.transmit(_CHUNK, self._ms(now_s))
+        if self._lasts("driver-text", now_s) and now_s >= self._text_due_s:
+            self._text_due_s = now_s + _TEXT_PERIOD_S
+            cut = self._random.randrange(len(data) + 1)
+            data = data[:cut] + DRIVER + data[cut:]
+        return self._damage_out.apply(text + data)
+
+    def _boot(self, reset: str, now_s: float) -> None:
+        self._text += boot_text(reset)
+        self._reboot_wanted = self._grab_fails = False
+        self._boot_s = now_s
+        self._ready_s = now_s + BOOT_S
+        self._frame_due_s = self._ready_s
+        self._core = _core(self._storage.load())
+        self._core.set_board(GIT_HASH, RESET_REASONS[reset])
+        self._unlock(now_s)
+
+    def _begin(self, kind: str, now_s: float) -> None:
+        if kind == "reboot":
+            self._boot(POWER_ON, now_s)
+        elif kind == "boot-text":
+            self._text += boot_text(POWER_ON)
+        elif kind == "noise":
+            self._text += self._random.randbytes(_NOISE_BYTES)
+        elif kind == "camera-timeout":
+            self._grab_fails = True
+            self._frame_due_s = now_s + GRAB_TIMEOUT_S
+
+    def _grab(self, now_s: float) -> None:
+        lost = self._lasts("camera-lost", now_s)
+        data = None if lost or self._grab_fails else self._camera.frame()
+        self._grab_fails = False
+        self._core.frame(data, WIDTH, HEIGHT, "rgb565", self._ms(now_s))
+        period = GRAB_TIMEOUT_S if lost else self._period_s
+        # Late frames are left out, not caught up with.
+        self._frame_due_s = max(self._frame_due_s + period, now_s)
+
+    def _obey(self, request: str, now_s: float) -> None:
+        if request == "save":
+            blob = self._core.settings_blob()
+            self._core.saved(not self._lasts("storage", now_s) and self._storage.save(blob))
+        elif request == "camera":
+            self._unlock(now_s)
+        elif request == "reboot":
+            self._reboot_wanted = True
+
+    def _unlock(self, now_s: float) -> None:
+        self._locked = False
+        self._locked_at_s = now_s + SETTLE_S
+        self._core.set_camera(SETTLED_EXPOSURE, SETTLED_GAIN, False)
+
+    def _lock(self) -> None:
+        wanted = self._core.c.settings.camera
+        self._locked = True
+        exposure = wanted.exposure if wanted.lock and wanted.exposure else SETTLED_EXPOSURE
+        gain = wanted.gain if wanted.lock and wanted.gain >= 0 else SETTLED_GAIN
+        self._core.set_camera(exposure, gain, bool(wanted.lock))
+
+    def _lasts(self, kind: str, now_s: float) -> bool:
+        return any(f.kind == kind and now_s - self._start_s >= f.at_s for f in self._lasting)
+
+    def _ms(self, now_s: float) -> int:
+        return int((now_s - self._boot_s) * 1000)
+
+
+def _core(blob: bytes | None) -> Any:
+    try:
+        from chromadock_firmware import Dock
+    except ModuleNotFoundError as error:
+        raise ChromadockError(
+            f"the simulated dock needs the package {error.name}: "
+            "run `make setup` in the project's folder"
+        ) from None
+    return Dock(blob=blob)

@@ -1,0 +1,404 @@
+"""The simulated dock by itself: time is an argument, so nothing here waits."""
+
+import os
+import random
+import socket
+from threading import Event
+
+import cv2
+import numpy as np
+import pytest
+import serial
+from simulation import packed, running_dock
+
+from chromadock import dialect
+from chromadock.errors import ChromadockError
+from chromadock.link import Connection, DockClient
+from chromadock.link.commands import command_long
+from chromadock.link.framing import FrameFinder
+from chromadock.link.rgb565 import HEIGHT, WIDTH, from_rgb565, to_qqvga, to_rgb565
+from chromadock.simulated import Fault, PtyPort, SimulatedDock, TcpPort, parse_fault
+from chromadock.simulated.camera import LiveCamera, open_camera
+from chromadock.simulated.damage import Damage
+from chromadock.simulated.faults import KINDS
+from chromadock.simulated.storage import Storage
+from chromadock.sources import Frame, Source
+
+HOST = {"system": 255, "component": 190}
+SAVE = command_long(dialect.MAV_CMD_PREFLIGHT_STORAGE, 1)
+REBOOT = command_long(dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1)
+
+
+class Bench:
+    """A dock on a desk, and a host that hears all it says."""
+
+    def __init__(self, *faults, start_s=0.0, source=None, **options):
+        self.now_s = start_s
+        self.dock = SimulatedDock(
+            open_camera(source), faults=[parse_fault(f) for f in faults], now_s=start_s, **options
+        )
+        self.finder = FrameFinder()
+        self.bytes = b""
+        self.messages = []
+
+    def run(self, seconds, step_s=0.02):
+        end_s = self.now_s + seconds
+        while self.now_s < end_s:
+            self.now_s += step_s
+            self.dock.step(self.now_s)
+            out = self.dock.transmit(self.now_s)
+            self.bytes += out
+            self.messages += self.finder.feed(out)
+        return self
+
+    def send(self, *messages):
+        self.dock.receive(packed(*messages, **HOST), self.now_s)
+        return self.run(0.2)
+
+    def status(self):
+        return self.all("DOCK_STATUS")[-1]
+
+    def all(self, kind):
+        return [m for m in self.messages if m.get_type() == kind]
+
+    def said(self):
+        return [m.text for m in self.all("STATUSTEXT")]
+
+    def result(self):
+        return self.all("COMMAND_ACK")[-1].result
+
+
+def limit(value):
+    return dialect.MAVLink_param_set_message(
+        50, 1, b"LED_LIMIT", value, dialect.MAV_PARAM_TYPE_REAL32
+    )
+
+
+def led_limit(bench):
+    bench.send(dialect.MAVLink_param_request_read_message(50, 1, b"LED_LIMIT", -1))
+    return bench.all("PARAM_VALUE")[-1].param_value
+
+
+def test_it_starts_with_the_boot_loaders_text_then_heartbeats():
+    bench = Bench().run(3)
+    assert b"rst:0x1 (POWERON_RESET),boot:0x13 (SPI_FAST_FLASH_BOOT)" in bench.bytes
+    assert bench.bytes.index(b"rst:0x1") < bench.bytes.index(b"\xfd")
+    assert 2 <= len(bench.all("HEARTBEAT")) <= 4
+    assert "started" in bench.said()[0]
+
+
+def test_the_camera_is_locked_after_settling():
+    bench = Bench().run(0.4)
+    assert bench.status().faults & dialect.DOCK_FAULT_UNLOCKED
+    bench.run(1)
+    assert bench.status().faults == 0
+    assert (bench.status().exposure, bench.status().gain) == (300, 4)
+
+
+def test_its_leds_are_dark_until_the_first_frame_then_show_the_marker():
+    bench = Bench()
+    assert bench.dock.duties == (4096, 4096, 4096)  # common anode
+    bench.run(0.5)
+    assert bench.dock.duties == (0, 4096, 2026)
+    assert list(bench.status().duty) == [0, 4096, 2026]
+
+
+@pytest.mark.parametrize("fps", [0.1, 1, 30])
+def test_it_decides_at_the_chosen_frame_rate(fps):
+    bench = Bench(fps=fps).run(20 + 0.5)
+    assert bench.status().frames == pytest.approx(fps * 20, abs=max(1, 0.03 * fps * 20))
+
+
+def test_a_setting_is_kept_over_a_reboot_only_if_saved():
+    bench = Bench().run(0.5).send(limit(100), SAVE)
+    assert bench.result() == dialect.MAV_RESULT_ACCEPTED
+    bench.send(limit(50)).send(REBOOT).run(1)
+    assert b"rst:0xc (SW_CPU_RESET)" in bench.bytes
+    assert bench.status().time_boot_ms < 2000
+    assert bench.status().reset_reason == 3
+    assert led_limit(bench) == 100
+
+
+def test_a_setting_is_kept_in_its_file_for_the_next_simulation(tmp_path):
+    file = tmp_path / "flash"
+    Bench(settings=file).run(0.5).send(limit(100), SAVE)
+    assert [p.name for p in tmp_path.iterdir()] == ["flash"]
+    assert led_limit(Bench(settings=file).run(0.5)) == 100
+
+
+@pytest.mark.parametrize("cut", [0, 1, 100])
+def test_corrupt_settings_give_way_to_the_defaults_and_it_says_so(tmp_path, cut):
+    file = tmp_path / "flash"
+    Bench(settings=file).run(0.5).send(limit(100), SAVE)
+    blob = bytearray(file.read_bytes())
+    blob[40] ^= 1
+    file.write_bytes(blob[: len(blob) - cut])
+    bench = Bench(settings=file).run(1)
+    assert bench.status().faults & dialect.DOCK_FAULT_SETTINGS
+    assert "stored settings corrupt: defaults in use" in bench.said()
+    assert led_limit(bench) == 255
+    bench.send(SAVE).run(0.5)  # mends it
+    assert bench.status().faults == 0
+
+
+def test_settings_that_cannot_be_saved_are_reported(tmp_path):
+    bench = Bench(settings=tmp_path / "missing" / "flash").run(1).send(SAVE).run(0.5)
+    assert bench.result() == dialect.MAV_RESULT_FAILED
+    assert bench.status().faults & dialect.DOCK_FAULT_STORAGE
+
+
+def test_the_storage_fault_begins_at_its_time():
+    bench = Bench("storage@2s").run(1).send(SAVE)
+    assert bench.result() == dialect.MAV_RESULT_ACCEPTED
+    bench.run(1).send(SAVE)
+    assert bench.result() == dialect.MAV_RESULT_FAILED
+
+
+def test_after_a_camera_timeout_the_camera_is_back():
+    bench = Bench("camera-timeout@2s").run(3)
+    frames = bench.status().frames
+    bench.run(2)
+    assert bench.status().frames - frames <= 1
+    bench.run(1.6)
+    assert bench.status().camera_faults == 1
+    assert [text for text in bench.said() if "camera" in text] == [
+        "camera gives no frame: colour kept, restarting it",
+        "camera is back",
+    ]
+    assert bench.status().faults == 0
+    assert bench.status().frames > frames
+
+
+def test_a_lost_camera_leaves_the_colour_and_the_link_as_they_were():
+    bench = Bench("camera-lost@2s").run(2)
+    duties, frames = bench.dock.duties, bench.status().frames
+    bench.run(10)
+    assert bench.status().faults & dialect.DOCK_FAULT_CAMERA
+    assert bench.status().camera_faults == 3  # a grab gives up after four seconds
+    assert bench.dock.duties == duties
+    assert bench.status().frames <= frames + 1
+    assert led_limit(bench) == 255
+
+
+def test_the_reboot_fault_starts_it_anew():
+    bench = Bench("reboot@3s").run(4)
+    assert bench.bytes.count(b"rst:0x1 (POWERON_RESET)") == 2
+    assert bench.status().time_boot_ms < 1100
+
+
+def test_text_and_noise_come_between_messages_at_their_time():
+    bench = Bench("boot-text@1s", "noise@2s").run(4)
+    assert bench.bytes.count(b"rst:0x1 (POWERON_RESET)") == 2
+    assert bench.status().time_boot_ms > 3500  # no restart
+    quiet = Bench("boot-text@1s").run(4)
+    assert len(bench.bytes) - len(quiet.bytes) == 256
+    assert len(bench.all("DOCK_STATUS")) >= len(quiet.all("DOCK_STATUS")) - 2
+
+
+def test_driver_text_costs_at_most_the_messages_that_it_hits():
+    bench = Bench("driver-text@1s").run(6)
+    texts = bench.bytes.count(b"cam_hal: EV-EOF-OVF\r\n")
+    assert texts == pytest.approx(10, abs=1)
+    plain = Bench().run(6)
+    lost = len(plain.messages) - len(bench.messages)
+    assert 0 < lost <= texts
+
+
+def test_corruption_is_the_same_for_the_same_seed_and_costs_some_messages():
+    first, again, other = (Bench("corrupt=0.01", seed=seed).run(5).bytes for seed in (1, 1, 2))
+    assert first == again != other
+    assert 0 < FrameFinder().feed(first).__len__() < len(Bench().run(5).messages)
+
+
+def test_it_goes_on_when_its_clock_wraps():
+    bench = Bench().run(1)
+    bench.now_s = 2**32 / 1000 - 1  # 49.7 days later
+    bench.run(0.9)
+    frames, beats = bench.status().frames, len(bench.all("HEARTBEAT"))
+    bench.run(3)
+    assert bench.status().time_boot_ms < 5000
+    assert bench.status().frames >= frames + 29
+    assert len(bench.all("HEARTBEAT")) >= beats + 2
+
+
+def test_the_camera_shows_a_folder_again_and_again(tmp_path):
+    for name, colour in (("1.png", (255, 0, 0)), ("2.png", (0, 255, 0))):
+        cv2.imwrite(str(tmp_path / name), np.full((48, 64, 3), colour, np.uint8))
+    camera = open_camera(str(tmp_path))
+    pixels = [tuple(from_rgb565(camera.frame(), WIDTH, HEIGHT)[60, 80]) for _ in range(5)]
+    blue, green = (255, 0, 0), (0, 255, 0)
+    assert pixels == [blue, green, blue, green, blue]
+    camera.close()
+
+
+class Webcam(Source):
+    """Two frames, then unplugged."""
+
+    live = True
+
+    def __init__(self, colours):
+        self.colours = colours
+        self.unplugged = Event()
+        self.closed = False
+
+    def __iter__(self):
+        for index, colour in enumerate(self.colours):
+            yield Frame(np.full((48, 64, 3), colour, np.uint8), "camera 0", index, index / 30)
+        self.unplugged.wait(5)
+        raise ChromadockError("camera 0: delivers no more frames: check the cable")
+
+    def close(self):
+        self.closed = True
+
+
+def test_a_live_source_gives_its_newest_frame_and_its_fault():
+    source = Webcam([(255, 0, 0), (0, 255, 0)])
+    camera = LiveCamera(source)
+    newest = camera.frame()
+    source.unplugged.set()
+    with pytest.raises(ChromadockError, match="check the cable"):
+        while True:
+            newest = camera.frame()
+    assert newest[:2] in (b"\x00\x1f", b"\x07\xe0")
+    camera.close()
+    assert source.closed
+
+
+def test_the_dock_sees_the_colour_that_its_source_has(tmp_path):
+    picture = tmp_path / "green.png"
+    cv2.imwrite(str(picture), np.full((480, 640, 3), (0, 200, 40), np.uint8))
+    status = Bench(source=str(picture)).run(0.5).status()
+    red, green, blue = status.background_rgb
+    assert green > 150 > red > blue
+
+
+def test_rgb565_is_big_endian_and_full_scale_stays():
+    red = np.zeros((1, 2, 3), np.uint8)
+    red[0, 0] = (0, 0, 255)
+    red[0, 1] = (255, 255, 255)
+    assert to_rgb565(red) == b"\xf8\x00\xff\xff"
+    assert np.array_equal(from_rgb565(to_rgb565(red), 2, 1), red)
+
+
+def test_all_rgb565_words_come_back_as_they_were():
+    words = np.arange(65536, dtype=">u2").tobytes()
+    assert to_rgb565(from_rgb565(words, 256, 256)) == words
+
+
+def test_a_frame_of_another_size_is_averaged_to_the_cameras():
+    striped = np.zeros((480, 640, 3), np.uint8)
+    striped[:, ::2] = 200
+    assert to_qqvga(striped).shape == (120, 160, 3)
+    assert set(to_qqvga(striped).flat) == {100}
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
+def test_damage_hits_its_share_of_the_bytes_in_pieces_of_any_size(share):
+    damage = Damage(share, random.Random(3))
+    sizes = random.Random(4)
+    hit = total = 0
+    while total < 50_000:
+        piece = bytes(sizes.randrange(1, 200))
+        hit += sum(map(bool, damage.apply(piece)))
+        total += len(piece)
+    assert hit / total == pytest.approx(share, rel=0.15)
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_a_fault_is_read_with_its_time(kind):
+    share = "=0.5" if kind == "corrupt" else ""
+    wanted = 0.5 if share else 0.0
+    assert parse_fault(kind + share) == Fault(kind, 0.0, wanted)
+    assert parse_fault(f"{kind}{share}@2.5s") == Fault(kind, 2.5, wanted)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "flood", "noise@", "noise@x", "noise@1.2.3s", "noise=1", "corrupt", "corrupt=2", "NOISE"],
+)
+def test_another_fault_is_refused_in_one_line(text):
+    with pytest.raises(ChromadockError, match="--fault") as refusal:
+        parse_fault(text)
+    assert "\n" not in str(refusal.value)
+
+
+def test_storage_without_a_file_forgets_with_the_process():
+    storage = Storage(None)
+    assert storage.load() is None
+    assert storage.save(b"blob")
+    assert storage.load() == b"blob"
+
+
+def test_storage_that_is_no_file_is_refused(tmp_path):
+    with pytest.raises(ChromadockError, match="--settings"):
+        Storage(tmp_path).load()
+
+
+def test_a_pseudo_terminal_survives_clients_that_come_and_go():
+    port = PtyPort()
+    for _ in range(3):
+        with serial.Serial(port.url, timeout=1) as client:
+            client.write(b"ping")
+            assert port.read(1) == b"ping"
+            assert port.write(b"pong") == 4
+            assert client.read(4) == b"pong"
+    port.close()
+
+
+def test_a_pseudo_terminal_that_nobody_reads_takes_no_more_but_does_not_block():
+    port = PtyPort()
+    assert sum(port.write(bytes(1000)) for _ in range(100)) < 100_000
+    assert port.read(0) == b""
+    port.close()
+
+
+def test_a_tcp_port_serves_one_client_at_a_time():
+    port = TcpPort("localhost:0")
+    address = ("127.0.0.1", int(port.url.rpartition(":")[2]))
+    with socket.create_connection(address) as first:
+        port.read(1)
+        with socket.create_connection(address) as second:
+            port.read(1)
+            assert second.recv(1) == b""  # turned away
+        first.sendall(b"ping")
+        assert port.read(1) == b"ping"
+        assert port.write(b"pong") == 4
+        assert first.recv(4) == b"pong"
+    assert port.read(1) == b""
+    assert port.write(b"nobody") == 6
+    with socket.create_connection(address) as third:
+        port.read(1)
+        third.sendall(b"ping")
+        assert port.read(1) == b"ping"
+    port.close()
+
+
+@pytest.mark.parametrize(
+    ("address", "says"),
+    [
+        ("0.0.0.0:5760", "only localhost"),
+        ("192.168.1.1:5760", "only localhost"),
+        ("example.com:5760", "only localhost"),
+        ("5760", "HOST:PORT"),
+        ("localhost:http", "HOST:PORT"),
+        ("localhost:70000", "HOST:PORT"),
+    ],
+)
+def test_a_tcp_address_that_is_not_this_computers_is_refused(address, says):
+    with pytest.raises(ChromadockError, match=says):
+        TcpPort(address)
+
+
+def test_a_tcp_port_that_is_taken_is_refused():
+    refused = pytest.raises(ChromadockError, match="another port")
+    with socket.create_server(("127.0.0.1", 0)) as taken, refused:
+        TcpPort(f"localhost:{taken.getsockname()[1]}")
+
+
+def test_a_client_that_leaves_within_a_message_does_no_harm_to_the_next_one():
+    with running_dock() as (url, _dock):
+        fd = os.open(url, os.O_RDWR | os.O_NOCTTY)
+        os.write(fd, packed(limit(7), **HOST)[:9])
+        os.close(fd)
+        with DockClient(Connection(url)) as client:
+            assert client.parameter("LED_LIMIT") == 255

@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench lint format generate clean setup-demo
+.PHONY: help setup demo test hil soak bench fuzz lint format generate clean setup-demo
 
 help: ## List these targets
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' Makefile | expand -t 12
@@ -22,8 +22,17 @@ demo: setup-demo ## Dock and vehicle in simulated water: out/demo/
 test: setup ## Run all checks and all tests
 	@$(VENV)/python tools/test.py
 
+hil: setup ## The hardware tests on the simulated dock; on a board: PORT=/dev/ttyUSB0 [BAUD=...] [FLASH=1]
+	@$(VENV)/python tools/hardware.py $(if $(PORT),--port=$(PORT)) $(if $(BAUD),--baud=$(BAUD)) $(if $(FLASH),--flash)
+
+soak: setup ## Ten minutes of a simulated dock on a bad line; SOAK_SECONDS=20 for a short run
+	@$(VENV)/python tools/soak.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
+
 bench: setup ## Measure against the budgets: out/bench.json
 	@$(VENV)/python tools/bench.py
+
+fuzz: setup ## Five minutes of libFuzzer on the link's receiver
+	@$(VENV)/python tools/fuzz.py --seconds 300
 
 lint: setup ## Run the checks of the source code only
 	@$(VENV)/python tools/lint.py
@@ -36,4 +45,4 @@ generate: setup-demo ## Write tables and golden vectors from shared/method.toml
 
 clean: ## Remove everything that was installed, built or written here
 	rm -rf .venv build out .pio .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	rm -rf host/*.egg-info firmware/bindings/build firmware/bindings/*.egg-info
+	rm -rf host/build host/*.egg-info host/chromadock/dialect.py firmware/bindings/build firmware/bindings/*.egg-info

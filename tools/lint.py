@@ -5,7 +5,9 @@ Each counts as one test.
 
 from __future__ import annotations
 
+import itertools
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,18 +18,24 @@ from outcome import ROOT, Outcome, missing, show_step
 
 # The programs that pip installed beside this Python.
 BIN = Path(sys.executable).parent
-C_FOLDERS = ("firmware", "tests/firmware")
+C_FOLDERS = ("firmware", "tests/firmware", "tests/fuzz", "tests/shell")
+C_SUFFIXES = (".c", ".h", ".cpp")
 DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
+SHELL = ROOT / "firmware" / "esp32cam"
+VENDOR = ROOT / "tests" / "shell" / "vendor"
+MAVLINK = ROOT / "build" / "mavlink" / "c"
 CPPCHECK_CACHE = ROOT / "build" / "cppcheck"
 
 
 def handwritten_c_files() -> list[str]:
-    """List the C sources and headers, less the generated ones, which say so at their top."""
-    files = (file for folder in C_FOLDERS for file in (ROOT / folder).rglob("*.[ch]"))
+    """List C and C++ sources and headers, less the generated ones, which say so at their top."""
+    files = (file for folder in C_FOLDERS for file in (ROOT / folder).rglob("*"))
     return sorted(
         str(file.relative_to(ROOT))
         for file in files
-        if "build" not in file.parts[len(ROOT.parts) :] and not is_generated(file)
+        if file.suffix in C_SUFFIXES
+        and "build" not in file.parts[len(ROOT.parts) :]
+        and not is_generated(file)
     )
 
 
@@ -50,6 +58,11 @@ def check(*command: str | Path) -> Outcome:
 def contract() -> Outcome:
     """Check that the generated tables are what shared/method.toml says."""
     return check(sys.executable, "shared/generate.py", "--check")
+
+
+def mavlink() -> Outcome:
+    """Write the headers that the C checks after it include."""
+    return check(sys.executable, "shared/mavlink.py")
 
 
 def ruff_check() -> Outcome:
@@ -83,10 +96,18 @@ def cppcheck() -> Outcome:
     if reason is not None:
         return Outcome(skips=[("cppcheck", reason)])
     CPPCHECK_CACHE.mkdir(parents=True, exist_ok=True)
+    # It takes a header for C: those in C++ are checked where they are included.
+    cpp_headers = (str(SHELL.relative_to(ROOT)), "tests/shell")
+    files = [
+        file
+        for file in handwritten_c_files()
+        if not (file.endswith(".h") and file.startswith(cpp_headers))
+    ]
     return check(
         "cppcheck",
         "--quiet",
         "--std=c11",
+        "--std=c++11",
         "--enable=warning,performance,portability",
         "--inline-suppr",
         "--suppress=missingIncludeSystem",
@@ -94,7 +115,8 @@ def cppcheck() -> Outcome:
         f"--cppcheck-build-dir={CPPCHECK_CACHE.relative_to(ROOT)}",
         "-j2",
         "-Ifirmware/lib/dockcore/src",
-        *handwritten_c_files(),
+        f"-I{VENDOR.relative_to(ROOT)}",
+        *files,
     )
 
 
@@ -109,8 +131,8 @@ def compiles_with(compiler: str) -> Outcome:
     with tempfile.TemporaryDirectory() as scratch:
         for source in sources:
             target = Path(scratch) / f"{source.stem}.o"
-            flags = manifest["build"]["flags"]
-            one = check(compiler, *flags, "-Werror", "-c", source, "-o", target)
+            flags = [*manifest["build"]["flags"], "-Werror", "-isystem", MAVLINK]
+            one = check(compiler, *flags, "-c", source, "-o", target)
             if one.failed:
                 total = Outcome(failed=1, output=total.output + one.output)
     return total
@@ -126,8 +148,30 @@ def clang() -> Outcome:
     return compiles_with("clang")
 
 
+def shell_compiles() -> Outcome:
+    """Compile the ESP32-CAM's shell as both Arduino cores do, against declarations of theirs.
+
+    True compilers for the board are PlatformIO's; what is tested here needs none.
+    """
+    compilers = [name for name in ("g++", "clang++") if shutil.which(name)]
+    if not compilers:
+        return Outcome(skips=[("shell -Werror", "no C++ compiler")])
+    flags = ["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti"]
+    folders = ["-isystem", VENDOR, "-I", DOCKCORE / "src"]
+    sources = sorted(SHELL.glob("*.cpp"))
+    total = Outcome(passed=1)
+    for compiler, standard, idf in itertools.product(compilers, ("gnu++11", "gnu++17"), (4, 5)):
+        versions = [f"-std={standard}", f"-DESP_IDF_VERSION_MAJOR={idf}"]
+        one = check(compiler, *versions, *flags, *folders, *sources)
+        if one.failed:
+            title = f"{compiler} {' '.join(versions)}:\n"
+            total = Outcome(failed=1, output=total.output + title + one.output)
+    return total
+
+
 LINTS: Sequence[tuple[str, Callable[[], Outcome]]] = (
     ("contract", contract),
+    ("mavlink", mavlink),
     ("ruff check", ruff_check),
     ("ruff format", ruff_format),
     ("mypy --strict", mypy),
@@ -135,6 +179,7 @@ LINTS: Sequence[tuple[str, Callable[[], Outcome]]] = (
     ("cppcheck", cppcheck),
     ("gcc -Werror", gcc),
     ("clang -Werror", clang),
+    ("shell -Werror", shell_compiles),
 )
 
 

@@ -19,6 +19,7 @@ class Outcome:
     failed: int = 0
     skips: list[tuple[str, str]] = field(default_factory=list)
     figures: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
     output: str = ""
 
     def add(self, other: Outcome) -> None:
@@ -27,6 +28,7 @@ class Outcome:
         self.failed += other.failed
         self.skips += other.skips
         self.figures += other.figures
+        self.notes += other.notes
 
 
 def show_step(name: str, step: Callable[[], Outcome]) -> Outcome:

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+import hardware
 from junit import read_report
 from lint import BIN, LINTS
 from outcome import ROOT, Outcome, missing, show_step
@@ -35,6 +36,14 @@ def pytest() -> Outcome:
     return run_suite(
         [sys.executable, "-m", "pytest", "-q", *workers, f"--junitxml={report}"], report
     )
+
+
+def hil() -> Outcome:
+    """Run the hardware suite on the simulated dock; what only a board shows is named."""
+    outcome = run_suite(hardware.COMMAND, hardware.REPORT)
+    lines = outcome.output.splitlines()
+    outcome.notes += [line for line in lines if line.startswith(hardware.LEFT_OUT)]
+    return outcome
 
 
 def run_suite(command: Sequence[str | Path], report: Path) -> Outcome:
@@ -65,10 +74,17 @@ def run_suite(command: Sequence[str | Path], report: Path) -> Outcome:
 def main() -> int:
     """Run everything and return the exit status."""
     total = Outcome()
-    for name, step in (*LINTS, ("pio test -e native", unity), ("pytest", pytest)):
+    for name, step in (
+        *LINTS,
+        ("pio test -e native", unity),
+        ("pytest", pytest),
+        ("hil", hil),
+    ):
         total.add(show_step(name, step))
     for figure in total.figures:
         print(f"figure: {figure}")
+    for note in total.notes:
+        print(note)
     for name, reason in total.skips:
         print(f"skipped: {name}: {reason}")
     print(summary(total))

@@ -50,6 +50,7 @@ def set_up_tests() -> None:
     unavailable = Unavailable()
     environment.install_test_tools()
     environment.install_opencv4()
+    environment.install_mavproxy()
     debian.install_test_packages(unavailable)
     native_tests.set_up(unavailable)
     unavailable.save()

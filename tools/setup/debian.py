@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import shutil
+import subprocess
 import sys
 import sysconfig
 from collections.abc import Callable, Sequence
@@ -72,7 +73,43 @@ NECESSARY: tuple[tuple[str, list[str], Callable[[], bool]], ...] = (
 
 
 def install_test_packages(unavailable: Unavailable) -> None:
-    """Install the cross compiler, the emulator and the checkers that are not there."""
+    """Install the cross compiler, the emulator, the checkers and the fuzzer that are not there."""
+    install_programs(unavailable)
+    if shutil.which("clang"):
+        install_fuzzer(unavailable)
+
+
+def install_fuzzer(unavailable: Unavailable) -> None:
+    """Install what clang fuzzes with, which is a package for each of its versions."""
+    if has_fuzzer():
+        return
+    package = f"libclang-rt-{clang_resources().name.split('.')[0]}-dev"
+    hindrance = why_not_install()
+    if hindrance is not None:
+        unavailable.add("libFuzzer", f"clang has none, and {hindrance.format(package)}")
+        return
+    try:
+        with step(f"Debian package: {package}"):
+            install([package])
+            if not has_fuzzer():
+                raise SetupError("it does not contain libFuzzer here")
+    except SetupError as error:
+        unavailable.add("libFuzzer", str(error))
+
+
+def has_fuzzer() -> bool:
+    """Tell whether clang can link a fuzzing program."""
+    return any(clang_resources().rglob("libclang_rt.fuzzer*.a"))
+
+
+def clang_resources() -> Path:
+    """Return the folder of clang's own libraries, which is named after its version."""
+    command = ["clang", "-print-resource-dir"]
+    return Path(subprocess.run(command, capture_output=True, text=True).stdout.strip())
+
+
+def install_programs(unavailable: Unavailable) -> None:
+    """Install the packages that are known by a program."""
     missing = [name for name, program in TEST_PACKAGES.items() if not shutil.which(program)]
     if not missing:
         return

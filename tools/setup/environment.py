@@ -15,6 +15,10 @@ HOST = ROOT / "host"
 BINDING = ROOT / "firmware" / "bindings"
 DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
 OPENCV4 = BUILD / "opencv4"
+MAVPROXY = BUILD / "mavproxy"
+DIALECT = HOST / "chromadock" / "dialect.py"
+# What both packages generate their MAVLink code from, when they are built.
+MAVLINK = [ROOT / "shared" / "chromadock.xml", ROOT / "shared" / "mavlink.py"]
 
 
 def make_environment() -> None:
@@ -31,8 +35,9 @@ def make_environment() -> None:
 def install_host() -> None:
     """Install the host package, editable, with the packages it needs."""
     requirements = TOOLS / "requirements-demo.txt"
-    stamp = Stamp(VENV, "host", [CONSTRAINTS, requirements, HOST / "pyproject.toml"])
-    if stamp.fresh():
+    package = [HOST / "pyproject.toml", HOST / "setup.py"]
+    stamp = Stamp(VENV, "host", [CONSTRAINTS, requirements, *package, *MAVLINK])
+    if stamp.fresh() and DIALECT.is_file():
         return
     with step("Python packages and the host package"):
         # First what builds the packages: they are built without isolation, so
@@ -44,7 +49,7 @@ def install_host() -> None:
 
 def install_binding() -> None:
     """Compile dockcore into a Python extension, anew when any of its files changed."""
-    stamp = Stamp(VENV, "binding", [CONSTRAINTS, DOCKCORE, BINDING])
+    stamp = Stamp(VENV, "binding", [CONSTRAINTS, DOCKCORE, BINDING, *MAVLINK])
     if stamp.fresh():
         return
     with step("firmware binding"):
@@ -67,14 +72,24 @@ def install_test_tools() -> None:
 
 def install_opencv4() -> None:
     """Put the newest OpenCV 4 beside OpenCV 5, for the parity tests alone."""
-    requirements = TOOLS / "requirements-opencv4.txt"
-    stamp = Stamp(OPENCV4, "opencv4", [requirements, str(sys.version_info[:2])])
+    install_beside(OPENCV4, "OpenCV 4")
+
+
+def install_mavproxy() -> None:
+    """Put MAVProxy beside the environment, for the tests of the link with real clients."""
+    install_beside(MAVPROXY, "MAVProxy")
+
+
+def install_beside(folder: Path, title: str) -> None:
+    """Install a package without those it needs into a folder of its own."""
+    requirements = TOOLS / f"requirements-{folder.name}.txt"
+    stamp = Stamp(folder, folder.name, [requirements, str(sys.version_info[:2])])
     if stamp.fresh():
         return
-    with step("OpenCV 4 in build/opencv4"):
-        shutil.rmtree(OPENCV4, ignore_errors=True)
+    with step(f"{title} in build/{folder.name}"):
+        shutil.rmtree(folder, ignore_errors=True)
         pip: list[str | Path] = [VENV_PYTHON, "-m", "pip", "install", "-q", "--no-deps"]
-        run([*pip, "--target", OPENCV4, "-r", requirements], "pip install")
+        run([*pip, "--target", folder, "-r", requirements], "pip install")
     stamp.set()
 
 

@@ -1,0 +1,168 @@
+"""Programs that were not written here, against the simulated dock."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pymavlink import mavutil
+from simulator import Simulator
+
+from chromadock.parameter_table import PARAMETERS
+
+ROOT = Path(__file__).resolve().parents[2]
+MAVPROXY = ROOT / "build" / "mavproxy"
+TIMEOUT_S = 20.0
+
+
+@pytest.fixture
+def tcp_dock(tmp_path: Path) -> Iterator[str]:
+    simulator = Simulator(tmp_path / "simulator.log", ["--tcp", "localhost:0"])
+    yield simulator.url.replace("socket://", "tcp:")
+    simulator.stop()
+
+
+@pytest.fixture
+def pty_dock(tmp_path: Path) -> Iterator[str]:
+    simulator = Simulator(tmp_path / "simulator.log")
+    yield simulator.url
+    simulator.stop()
+
+
+@pytest.fixture(params=["tcp", "pty"])
+def ground_station(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch):
+    """pymavlink with the common dialect alone: it knows nothing of ours."""
+    monkeypatch.setenv("MAVLINK20", "1")
+    device = request.getfixturevalue(f"{request.param}_dock")
+    link = mavutil.mavlink_connection(device, baud=921600, dialect="common")
+    assert link.wait_heartbeat(timeout=TIMEOUT_S) is not None
+    yield link
+    link.close()
+
+
+def value_of(link, name: str) -> float:
+    """The next answer about one parameter."""
+    end = time.monotonic() + TIMEOUT_S
+    while time.monotonic() < end:
+        answer = link.recv_match(type="PARAM_VALUE", blocking=True, timeout=1)
+        if answer is not None and answer.param_id == name:
+            return float(answer.param_value)
+    raise AssertionError(f"no answer about {name}")
+
+
+def test_mavutil_fetches_and_sets_every_parameter(ground_station) -> None:
+    link = ground_station
+    assert link.target_system == 50
+    link.param_fetch_all()
+    fetched: dict[str, float] = {}
+    end = time.monotonic() + TIMEOUT_S
+    while len(fetched) < len(PARAMETERS) and time.monotonic() < end:
+        answer = link.recv_match(type="PARAM_VALUE", blocking=True, timeout=1)
+        if answer is not None:
+            assert answer.param_count == len(PARAMETERS)
+            fetched[answer.param_id] = answer.param_value
+    assert fetched == {p.name: pytest.approx(p.default, abs=1e-4) for p in PARAMETERS}
+    for p in PARAMETERS:
+        for value in (p.minimum, p.maximum):
+            link.param_set_send(p.name, value)
+            assert value_of(link, p.name) == pytest.approx(value, abs=1e-4)
+    for p in PARAMETERS:
+        link.param_fetch_one(p.name)
+        assert value_of(link, p.name) == pytest.approx(p.maximum, abs=1e-4)
+
+
+def test_mavutil_is_told_the_range_of_a_value_refused(ground_station) -> None:
+    link = ground_station
+    link.param_set_send("REPORT_HZ", 31)
+    end = time.monotonic() + TIMEOUT_S
+    while time.monotonic() < end:
+        text = link.recv_match(type="STATUSTEXT", blocking=True, timeout=1)
+        if text is not None and "REPORT_HZ" in text.text:
+            break
+    assert text.text == "REPORT_HZ refused: allowed 0 to 30"
+    assert text.severity == mavutil.mavlink.MAV_SEVERITY_WARNING
+
+
+class MavProxy:
+    """MAVProxy's command line, without windows; its files are below ``folder``."""
+
+    def __init__(self, master: str, folder: Path) -> None:
+        self.said = ""
+        environment = {**os.environ, "HOME": str(folder), "PYTHONPATH": str(MAVPROXY)}
+        environment.pop("DISPLAY", None)
+        self.process = subprocess.Popen(
+            [
+                *(sys.executable, "-u", "-m", "MAVProxy.mavproxy", f"--master={master}"),
+                *(f"--state-basedir={folder}", "--default-modules=param,link"),
+            ],
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            bufsize=0,
+        )
+
+    def type(self, line: str) -> None:
+        """One command; what was said before is forgotten."""
+        assert self.process.stdin is not None
+        self.said = ""
+        self.process.stdin.write(f"{line}\n".encode())
+
+    def expect(self, pattern: str) -> re.Match[str]:
+        """Wait for it."""
+        assert self.process.stdout is not None
+        end = time.monotonic() + TIMEOUT_S
+        while (found := re.search(pattern, self.said)) is None:
+            assert time.monotonic() < end, f"no {pattern!r} in {self.said!r}"
+            if select.select([self.process.stdout], [], [], 0.2)[0]:
+                data = self.process.stdout.read(4096)
+                assert data, f"it ended: {self.said}"
+                self.said += data.decode(errors="replace")
+        return found
+
+    def close(self) -> None:
+        """End it."""
+        self.process.kill()  # asked politely it takes its time, and it keeps nothing of ours
+        self.process.wait()
+        for pipe in (self.process.stdin, self.process.stdout):
+            if pipe is not None:
+                pipe.close()
+
+
+@pytest.fixture
+def mavproxy(tcp_dock: str, tmp_path: Path) -> Iterator[MavProxy]:
+    folder = tmp_path / "mavproxy"
+    folder.mkdir()
+    console = MavProxy(tcp_dock, folder)
+    yield console
+    console.close()
+
+
+def test_mavproxy_lists_parameters_sets_one_and_shows_status_text(mavproxy: MavProxy) -> None:
+    mavproxy.expect(rf"Received {len(PARAMETERS)} parameters")
+    mavproxy.type("param show *")
+    last = max(p.name for p in PARAMETERS)
+    mavproxy.expect(rf"{last}\s+[\d.]+\s")
+    listed = dict(re.findall(r"^(?:.*> )?([A-Z_]+)\s+(-?[\d.]+)\s*$", mavproxy.said, re.MULTILINE))
+    listed = {name: float(value) for name, value in listed.items()}
+    assert listed == {p.name: pytest.approx(p.default, abs=1e-4) for p in PARAMETERS}
+
+    mavproxy.type("param set WINDOW_MS 1500")
+    for _ in range(20):  # it sends when it finds the time
+        mavproxy.type("param fetch WINDOW_MS")
+        if float(mavproxy.expect(r"WINDOW_MS = ([\d.]+)\n")[1]) == 1500:
+            break
+    else:
+        pytest.fail("WINDOW_MS was not set")
+
+    mavproxy.type("param set REPORT_HZ 31")
+    mavproxy.expect(r"REPORT_HZ refused: allowed 0 to 30")
+    mavproxy.expect(r"Failed to set REPORT_HZ to 31")

@@ -37,7 +37,7 @@ class Rig:
         self._leave = wire.listen(self.raw.extend)
         self.texts: list[str] = []
         self.dock = DockClient(
-            wire,  # type: ignore[arg-type]
+            wire,  # type: ignore[arg-type]  # a Connection to all that uses it
             timeout_s=target.boot_s,
             on_text=lambda _, words: self.texts.append(words),
         )

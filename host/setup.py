@@ -11,7 +11,7 @@ from setuptools.command.build import build
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "shared"))
 
-import mavlink  # noqa: E402
+import mavlink  # noqa: E402 - found by the line above
 
 
 class BuildDialect(Command):
@@ -55,7 +55,7 @@ class BuildDialect(Command):
 class Build(build):
     """The build with that step before the others."""
 
-    sub_commands = [("build_dialect", None), *build.sub_commands]  # noqa: RUF012
+    sub_commands = [("build_dialect", None), *build.sub_commands]  # noqa: RUF012 - setuptools' own way
 
 
 setup(cmdclass={"build": Build, "build_dialect": BuildDialect})

@@ -50,13 +50,11 @@ def constants(m: Method) -> dict[str, int]:
         "FALLBACK_HUE": m["marker"]["fallback_hue"],
         **{f"MAPPING_{k.upper()}": i for i, k in enumerate(mappings)},
         "MAPPING_COUNT": len(mappings),
-        "DEFAULT_MAPPING": mappings.index(m["marker"]["default_mapping"]),
         "WINDOW_MS": roll["window_ms"],
         "MIN_WINDOW_MS": roll["min_window_ms"],
         "MAX_WINDOW_MS": roll["max_window_ms"],
         "WINDOW_CAPACITY": roll["max_window_ms"] * roll["max_rate_hz"] // 1000,
         "GAMMA_COUNT": len(led["gammas"]),
-        "DEFAULT_GAMMA": led["gammas"].index(led["default_gamma"]),
         "PWM_BITS": led["pwm_bits"],
         "MATRIX_UNIT": led["matrix_unit"],
     }
@@ -83,18 +81,14 @@ def c_header(banner: str, m: Method, digest: str, tables: Tables) -> str:
         "#endif",
         "",
     ]
-    turns = ", ".join(str(v) for v in m["marker"]["mappings"].values())
-    tables_turns = f"#define METHOD_MAPPING_TURNS {turns}"
-    lines.insert(lines.index("/* Hue turned by each mapping, in hue steps. */"), tables_turns)
     return "\n".join(lines)
 
 
-def c_tables(banner: str, tables: Tables) -> str:
+def c_tables(banner: str, m: Method, tables: Tables) -> str:
     """``method.c``: the tables themselves."""
     parts = [f'/* {banner} */\n#include "method.h"\n']
-    parts.append(
-        "const uint16_t METHOD_MAPPING_TURN[METHOD_MAPPING_COUNT] = {METHOD_MAPPING_TURNS};\n"
-    )
+    turns = braces(m["marker"]["mappings"].values())
+    parts.append(f"const uint16_t METHOD_MAPPING_TURN[METHOD_MAPPING_COUNT] = {turns};\n")
     for name, values in tables.items():
         body = rows(values, "    ", 80)
         parts.append(f"const {c_type(name)} METHOD_{name}[{len(values)}] = {{\n{body}}};\n")

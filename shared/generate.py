@@ -68,7 +68,7 @@ def outputs() -> dict[str, bytes]:
         "host/chromadock/parameter_table.py": emit_parameters.python(settings_banner, settings),
         "docs/parameters.md": emit_parameters.page(settings_banner, settings),
         "firmware/lib/dockcore/src/method.h": emit.c_header(banner, method, digest(method), lookup),
-        "firmware/lib/dockcore/src/method.c": emit.c_tables(banner, lookup),
+        "firmware/lib/dockcore/src/method.c": emit.c_tables(banner, method, lookup),
         "host/chromadock/method.py": emit.python(banner, method, digest(method), lookup),
         "shared/vectors/golden.json": emit.vectors_json(vectors),
         "tests/firmware/golden.c": emit.c_vectors(

@@ -19,7 +19,7 @@ if importlib.util.find_spec("pymavlink") is None:
     importlib.invalidate_caches()
 
 sys.path.insert(0, str(ROOT / "shared"))
-import mavlink  # noqa: E402
+import mavlink  # noqa: E402 - found by the line above
 
 try:
     mavlink.generate_c()

@@ -20,7 +20,7 @@ DOCKCORE = HERE.parent / "lib" / "dockcore" / "src"
 SHARED = HERE.parents[1] / "shared"
 
 sys.path.insert(0, str(SHARED))
-import mavlink  # noqa: E402
+import mavlink  # noqa: E402 - found by the line above
 
 
 def declarations() -> str:

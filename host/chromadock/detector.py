@@ -63,7 +63,7 @@ class Detector:
     @property
     def mask(self) -> NDArray[np.bool_]:
         """(H, W) bool: the pixels of the last frame that passed the colour mask."""
-        return self._method.mask
+        return self._method.mask.astype(np.bool_)
 
     def process(self, frame_bgr: NDArray[np.uint8], time_s: float) -> Detection:
         """Look for the dock in one frame.

@@ -60,7 +60,7 @@ static inline void put(const void *bytes, size_t n)
             found[found_count].length = message.length;
             memcpy(found[found_count].payload, message.payload, message.length);
             found_count++;
-            receiver_done(&receiver, &message);
+            receiver_done(&receiver);
         }
     } while (n > 0);
 }

@@ -13,6 +13,7 @@ from chromadock.cli.report import Report
 from chromadock.detector import MAPPINGS, METHODS, Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
+from chromadock.method import DEFAULT_MAPPING_NAME
 from chromadock.output import OverlayOutput, open_overlay
 from chromadock.overlay import draw_overlay
 from chromadock.sources import Frame, Source, open_source
@@ -44,7 +45,7 @@ def detect(
     mapping: Annotated[
         str,
         typer.Option(help=f"From water to marker colour, as in the dock: {', '.join(MAPPINGS)}."),
-    ] = "ternary",
+    ] = DEFAULT_MAPPING_NAME,
     independent: Annotated[
         bool, typer.Option("--independent", help="Treat every frame alone.")
     ] = False,

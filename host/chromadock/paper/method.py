@@ -33,7 +33,7 @@ class PaperMethod:
     def __init__(self, dock: DockGeometry) -> None:
         self._dock = dock
         self._rectangle = Rectangle.of(dock)
-        self.mask: NDArray[np.bool_] = np.zeros((0, 0), np.bool_)
+        self.mask: NDArray[np.uint8] = np.zeros((0, 0), np.uint8)
 
     def find(
         self,
@@ -45,7 +45,7 @@ class PaperMethod:
     ) -> Found:
         """Look for the dock in a (H, W, 3) uint8 BGR frame."""
         mask = colour_mask(frame_bgr, observed) & foreground(frame_bgr, background_bin)
-        self.mask = mask.astype(np.bool_)
+        self.mask = mask
         watch.lap("mask")
 
         spots = find_spots(mask)

@@ -91,11 +91,18 @@ static void test_offsets_come_before_gamma(void)
     assert_duties(2400, 0, 0, RED, settings); /* 4096 * (200 / 255)^2.2 */
 }
 
+static bool are_valid(led_settings_t led)
+{
+    dock_settings_t settings = dock_default_settings();
+    settings.led = led;
+    return dock_settings_are_valid(&settings);
+}
+
 static void test_the_defaults_are_those_of_the_board(void)
 {
     const led_settings_t defaults = dock_default_settings().led;
 
-    TEST_ASSERT_TRUE(led_settings_are_valid(&defaults));
+    TEST_ASSERT_TRUE(are_valid(defaults));
     assert_duties(0, 4096 - 899, 4096, ORANGE, defaults);
 }
 
@@ -104,13 +111,13 @@ static void test_an_offset_beyond_255_is_invalid(void)
     for (int i = 0; i < 3; i++) {
         led_settings_t settings = plain();
         settings.offset[i] = 255;
-        TEST_ASSERT_TRUE(led_settings_are_valid(&settings));
+        TEST_ASSERT_TRUE(are_valid(settings));
         settings.offset[i] = 256;
-        TEST_ASSERT_FALSE(led_settings_are_valid(&settings));
+        TEST_ASSERT_FALSE(are_valid(settings));
         settings.offset[i] = -255;
-        TEST_ASSERT_TRUE(led_settings_are_valid(&settings));
+        TEST_ASSERT_TRUE(are_valid(settings));
         settings.offset[i] = -256;
-        TEST_ASSERT_FALSE(led_settings_are_valid(&settings));
+        TEST_ASSERT_FALSE(are_valid(settings));
     }
 }
 
@@ -118,9 +125,9 @@ static void test_a_gamma_without_a_table_is_invalid(void)
 {
     led_settings_t settings = plain();
     settings.gamma = 3;
-    TEST_ASSERT_TRUE(led_settings_are_valid(&settings));
+    TEST_ASSERT_TRUE(are_valid(settings));
     settings.gamma = 4;
-    TEST_ASSERT_FALSE(led_settings_are_valid(&settings));
+    TEST_ASSERT_FALSE(are_valid(settings));
 }
 
 static void run_tests(void)

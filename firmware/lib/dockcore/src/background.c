@@ -4,6 +4,10 @@
 
 #include "hsv.h"
 
+_Static_assert(METHOD_GREY_RED + METHOD_GREY_GREEN + METHOD_GREY_BLUE ==
+                   1 << METHOD_GREY_SHIFT,
+               "grey_bin leaves the product with blue out");
+
 /* OpenCV's COLOR_RGB2GRAY, then five equal intervals.  The three weights add up
  * to 1, so that two products are enough. */
 static inline uint32_t grey_bin(uint32_t red, uint32_t green, uint32_t blue)

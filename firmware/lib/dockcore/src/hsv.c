@@ -1,5 +1,7 @@
 #include "hsv.h"
 
+_Static_assert(METHOD_HUE_RANGE == 6 * 256, "a sextant is a byte of hue");
+
 rgb_t rgb_from_hsv(uint32_t hue, uint32_t saturation, uint32_t value)
 {
     const uint32_t low = value - (value * saturation + 127) / 255;

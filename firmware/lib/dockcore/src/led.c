@@ -7,14 +7,6 @@ static int64_t clamp(int64_t value, int64_t least, int64_t most)
     return value < least ? least : value > most ? most : value;
 }
 
-bool led_settings_are_valid(const led_settings_t *settings)
-{
-    for (int i = 0; i < 3; i++)
-        if (settings->offset[i] < -255 || settings->offset[i] > 255)
-            return false;
-    return settings->gamma < METHOD_GAMMA_COUNT;
-}
-
 /* Light 0..65535 after the matrix row. */
 static uint32_t mix(const int16_t row[3], const uint16_t light[3])
 {

@@ -19,8 +19,6 @@ typedef struct {
     bool common_anode; /* the pin pulls the LED's cathode low: duty inverted */
 } led_settings_t;
 
-bool led_settings_are_valid(const led_settings_t *settings);
-
 /* Duties 0..LED_FULL of a pure colour: offset, gamma decoding, 3 x 3 matrix,
  * limit, polarity. */
 void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings);

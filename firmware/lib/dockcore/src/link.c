@@ -52,7 +52,7 @@ void dock_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
             /* Only a ground station or a vehicle talks to a dock. */
             if (message.system != DOCK_ID_SYSTEM)
                 handle(dock, &message, now_ms);
-            receiver_done(receiver, &message);
+            receiver_done(receiver);
         }
     } while (n > 0);
 }

@@ -78,8 +78,7 @@ bool receiver_next(receiver_t *receiver, int (*crc_extra)(uint32_t id),
     return false;
 }
 
-void receiver_done(receiver_t *receiver, const received_t *message)
+void receiver_done(receiver_t *receiver)
 {
-    (void)message;
     drop(receiver, whole_length(receiver->bytes));
 }

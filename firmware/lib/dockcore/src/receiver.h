@@ -40,6 +40,6 @@ bool receiver_next(receiver_t *receiver, int (*crc_extra)(uint32_t id),
                    received_t *message);
 
 /* Drops the message that receiver_next gave. */
-void receiver_done(receiver_t *receiver, const received_t *message);
+void receiver_done(receiver_t *receiver);
 
 #endif

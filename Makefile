@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test hil soak bench fuzz lint format generate clean setup-demo
+.PHONY: help setup demo results test hil soak bench fuzz lint format generate clean setup-demo
 
 help: ## List these targets
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' Makefile | expand -t 12
@@ -18,6 +18,9 @@ setup-demo:
 
 demo: setup-demo ## Dock and vehicle in simulated water: out/demo/
 	@$(VENV)/chromadock demo
+
+results: setup-demo ## The paper's experiments on simulated frames: docs/results.md
+	@$(VENV)/python tools/results.py
 
 test: setup ## Run all checks and all tests
 	@$(VENV)/python tools/test.py

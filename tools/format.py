@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from lint import BIN, handwritten_c_files
-from outcome import ROOT
+from step import ROOT
 
 
 def main() -> int:

@@ -16,7 +16,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from outcome import ROOT
+from step import ROOT
 
 FUZZ = ROOT / "build" / "fuzz"
 PROGRAM = FUZZ / "fuzz_receive"

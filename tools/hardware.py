@@ -8,7 +8,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from outcome import ROOT
+from step import ROOT
 
 REPORT = ROOT / "build" / "hil" / "report.xml"
 COMMAND = [sys.executable, "-m", "pytest", "-c", "hil/pytest.ini", "hil", f"--junitxml={REPORT}"]

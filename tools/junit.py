@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-from outcome import Outcome
+from step import Outcome
 
 
 def read_report(report: Path) -> Outcome:

@@ -14,7 +14,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from outcome import ROOT, Outcome, missing, show_step
+from step import ROOT, Outcome, missing, show_step
 
 # The programs that pip installed beside this Python.
 BIN = Path(sys.executable).parent

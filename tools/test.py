@@ -14,7 +14,7 @@ from pathlib import Path
 import hardware
 from junit import read_report
 from lint import BIN, LINTS
-from outcome import ROOT, Outcome, missing, show_step
+from step import ROOT, Outcome, missing, show_step
 
 REPORTS = ROOT / "build" / "reports"
 

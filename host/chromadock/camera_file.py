@@ -13,6 +13,7 @@ from pydantic import BaseModel, Field, ValidationError
 
 from chromadock.errors import ChromadockError
 from chromadock.text import one_line
+from chromadock.validation import place, shown, wording
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Pixels = Annotated[int, Field(gt=0)]
@@ -109,13 +110,8 @@ def _problem(error: yaml.YAMLError) -> str:
 
 def _explain(error: ValidationError) -> str:
     """The first fault of a camera file in one line."""
-    fault = error.errors()[0]
-    place = fault["loc"]
-    key = ".".join(str(part) for part in place if not isinstance(part, int))
-    number = next((f", number {part + 1}" for part in place if isinstance(part, int)), "")
-    where = f"{key}{number}"
-    given = fault["input"]
-    kind = fault["type"]
+    fault: Any = error.errors()[0]
+    where, given, kind = place(fault["loc"]), fault["input"], fault["type"]
     if kind == "missing":
         return f"{where} is missing: give the camera_info YAML of your calibration"
     if kind in ("too_short", "too_long"):
@@ -124,10 +120,8 @@ def _explain(error: ValidationError) -> str:
         return f"{where} is {given}: it must be positive, in pixels"
     if kind == "finite_number":
         return f"{where} is {given}: it must be a finite number, so calibrate again"
-    wanted = {"model_type": "rows, cols and data", "list_type": "a list of numbers"}.get(
-        kind, fault["msg"].removeprefix("Input should be ")
-    )
-    return f"{where} is {one_line(repr(given), 40)}: it must be {wanted}"
+    wanted = "rows, cols and data" if kind == "model_type" else wording(fault)
+    return f"{where} is {shown(given)}: it must be {wanted}"
 
 
 def _check_model(path: Path, info: _CameraInfo) -> None:

@@ -6,7 +6,6 @@ an approaching vehicle, as that vehicle sees it; metres.
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from importlib import resources
 from itertools import combinations
@@ -18,12 +17,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from chromadock.errors import ChromadockError
-from chromadock.text import one_line
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from chromadock.toml_file import read_toml
+from chromadock.validation import place, shown
 
 DEFAULT_FILE = "default_dock.toml"
 """Packaged; it is also the example to copy."""
@@ -71,8 +66,8 @@ class DockGeometry:
     @classmethod
     def default(cls) -> DockGeometry:
         """The original dock: a rectangle of 0.890 m x 0.127 m, named by its corners."""
-        text = resources.files("chromadock").joinpath(DEFAULT_FILE).read_text(encoding="utf-8")
-        return _parsed(text, DEFAULT_FILE)
+        with resources.as_file(resources.files("chromadock") / DEFAULT_FILE) as path:
+            return _loaded(path, DEFAULT_FILE)
 
     @classmethod
     def from_toml(cls, path: str | Path) -> DockGeometry:
@@ -83,18 +78,7 @@ class DockGeometry:
         ChromadockError
             One line with the file, what is wrong and the mend.
         """
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except OSError as error:
-            raise ChromadockError(
-                f"{path}: cannot read the dock file ({error.strerror}): "
-                "give a TOML file with one [[marker]] for each marker"
-            ) from None
-        except UnicodeDecodeError:
-            raise ChromadockError(
-                f"{path}: not a text file: give a TOML file with one [[marker]] for each marker"
-            ) from None
-        return _parsed(text, str(path))
+        return _loaded(path, str(path))
 
 
 class _Marker(BaseModel):
@@ -108,37 +92,29 @@ class _DockFile(BaseModel):
     marker: list[_Marker] = []
 
 
-def _parsed(text: str, source: str) -> DockGeometry:
+def _loaded(path: str | Path, source: str) -> DockGeometry:
+    content = read_toml(path, "give a TOML file with one [[marker]] for each marker")
     try:
-        content = _DockFile.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
-        raise ChromadockError(
-            f"{source}: not valid TOML ({one_line(error)}): correct that line"
-        ) from None
+        markers = _DockFile.model_validate(content).marker
     except ValidationError as error:
         raise ChromadockError(f"{source}: {_explain(error)}") from None
-    points = np.array([m.position for m in content.marker], dtype=np.float64).reshape(-1, 3)
-    return DockGeometry(tuple(m.name for m in content.marker), points, source)
+    points = np.array([m.position for m in markers], dtype=np.float64).reshape(-1, 3)
+    return DockGeometry(tuple(m.name for m in markers), points, source)
 
 
 def _explain(error: ValidationError) -> str:
     """The first fault of a dock file in one line."""
     fault: Any = error.errors()[0]
-    place = fault["loc"]
-    keys = [str(part) for part in place if not isinstance(part, int)]
-    index = next((part + 1 for part in place if isinstance(part, int)), None)
-    key = keys[-1]
-    where = f"marker {index}: {key}" if index and len(keys) > 1 else key
-    kind = fault["type"]
-    if kind == "extra_forbidden":
-        known = "name and position" if index else "[[marker]]"
+    where, of_marker = place(fault["loc"][:3]), len(fault["loc"]) > 1
+    if fault["type"] == "extra_forbidden":
+        known = "name and position" if of_marker else "[[marker]]"
         return f"unknown key {where}: only {known} may stand there"
-    if kind == "missing":
+    if fault["type"] == "missing":
         return f"{where} is missing: each [[marker]] has a name and a position"
-    if key == "name":
-        return f'{where} is {fault["input"]!r}: write a text such as name = "top_left"'
-    if key == "position":
+    if "position" in fault["loc"]:
         return f"{where} must be three numbers in metres: position = [x, y, z]"
+    if "name" in fault["loc"]:
+        return f'{where} is {shown(fault["input"])}: write a text such as name = "top_left"'
     return f"{where} must be one or more [[marker]] with a name and a position"
 
 

@@ -102,7 +102,7 @@ def test_a_file_of_another_layout_is_refused_in_one_line(load, text, says):
 
 
 def test_a_missing_dock_file_is_refused(tmp_path):
-    with pytest.raises(ChromadockError, match=r"none\.toml: cannot read .*No such file"):
+    with pytest.raises(ChromadockError, match=r"none\.toml: cannot be read .*No such file"):
         DockGeometry.from_toml(tmp_path / "none.toml")
 
 

@@ -22,6 +22,8 @@ TEST_PACKAGES = {
     "qemu-system-misc": "qemu-system-xtensa",
     "clang": "clang",
     "cppcheck": "cppcheck",
+    "chromium": "chromium",
+    "chromium-driver": "chromedriver",
 }
 
 
@@ -73,7 +75,7 @@ NECESSARY: tuple[tuple[str, list[str], Callable[[], bool]], ...] = (
 
 
 def install_test_packages(unavailable: Unavailable) -> None:
-    """Install the cross compiler, the emulator, the checkers and the fuzzer that are not there."""
+    """Install what compilers, emulator, checkers, browser and fuzzer are not there."""
     install_programs(unavailable)
     if shutil.which("clang"):
         install_fuzzer(unavailable)

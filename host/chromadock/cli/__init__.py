@@ -15,6 +15,8 @@ import typer
 from chromadock.cli.demo import demo
 from chromadock.cli.detect import detect
 from chromadock.cli.dock import dock
+from chromadock.cli.evaluate import evaluate
+from chromadock.cli.simulate import simulate
 from chromadock.errors import ChromadockError
 from chromadock.quiet import quiet_libraries
 from chromadock.text import one_line
@@ -35,6 +37,8 @@ app = typer.Typer(
 )
 app.command("detect")(detect)
 app.command("demo")(demo)
+app.command("evaluate")(evaluate)
+app.command("simulate")(simulate)
 app.add_typer(dock, name="dock")
 
 

@@ -13,10 +13,10 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.output import JsonLines, open_overlay
 from chromadock.overlay import draw_overlay
+from chromadock.processors import processors
 
 if TYPE_CHECKING:
     from chromadock.demo.record import Record
@@ -30,10 +30,9 @@ def demo(
         "out/demo"
     ),
 ) -> None:
-    """Run dock and vehicle in simulated water that drifts from blue to green."""
+    """Run dock and vehicle in simulated water: a blue pool, then a green lake."""
     try:
-        from chromadock.demo import scene
-        from chromadock.demo.loop import FRAME_RATE_HZ, run
+        from chromadock.demo.loop import COUNT, FRAME_RATE_HZ, run
         from chromadock.demo.overview import write_overview
         from chromadock.demo.record import Record
     except ModuleNotFoundError as error:
@@ -45,24 +44,25 @@ def demo(
     except OSError as error:
         raise ChromadockError(f"{out}: cannot be made a folder ({error.strerror})") from None
 
-    geometry = DockGeometry.default()
-    count = round(scene.DURATION_S * FRAME_RATE_HZ)
-    shown = set(np.linspace(0, count - 1, _SNAPSHOTS).astype(int).tolist())
+    shown = set(np.linspace(0, COUNT - 1, _SNAPSHOTS).astype(int).tolist())
     records, snapshots = [], []
     with ExitStack() as stack:
-        video = stack.enter_context(open_overlay(out / "overlay.mp4", count, FRAME_RATE_HZ))
+        video = stack.enter_context(open_overlay(out / "overlay.mp4", COUNT, FRAME_RATE_HZ))
         lines = stack.enter_context(JsonLines(out / "frames.jsonl"))
-        bar = track(
-            run(geometry), "approaching", total=count, console=Console(stderr=True), transient=True
-        )
-        for step in bar:
+        moments = run(processors())
+        console = Console(stderr=True)
+        for moment in track(moments, "approaching", COUNT, console=console, transient=True):
             picture = draw_overlay(
-                step.frame_bgr, step.mask, step.detection, scene.VEHICLE_CAMERA, geometry
+                moment.frame.image_bgr,
+                moment.mask,
+                moment.detection,
+                moment.scene.vehicle_camera.model,
+                moment.scene.dock,
             )
-            video.write(picture, "", step.index)
-            if step.index in shown:
-                snapshots.append((step.time_s, picture))
-            records.append(Record.of(step))
+            video.write(picture, "", moment.index)
+            if moment.index in shown:
+                snapshots.append((moment.time_s, picture))
+            records.append(Record.of(moment))
             lines.write(records[-1].to_dict())
     write_overview(out / "overview.png", records, snapshots)
     _print_table(records)

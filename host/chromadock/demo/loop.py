@@ -1,59 +1,99 @@
-"""Dock and vehicle side by side, a frame at a time, with no message between them."""
+"""Two dives, one after the other: a blue pool, then a green lake."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.colour.hsv import degrees
-from chromadock.demo import scene
 from chromadock.detection import Detection
 from chromadock.detector import Detector
-from chromadock.dock import DockGeometry
-from chromadock_firmware import Dock, lib
+from chromadock.sim.renderer import Frame
+from chromadock.sim.scene import Scene, load_scene
+from chromadock.sim.simulation import Simulation, Step
+from chromadock.sim.workers import rendered
 
 FRAME_RATE_HZ = 15
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One moment: the vehicle's frame and mask, what it found, and the truth."""
+@dataclass(frozen=True)
+class Leg:
+    """One dive: a shipped scene, and what is different in it."""
+
+    scene_name: str
+    duration_s: float
+    changes: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def count(self) -> int:
+        """Frames."""
+        return round(self.duration_s * FRAME_RATE_HZ)
+
+    def scene(self) -> Scene:
+        """The scene with the changes."""
+        return load_scene(self.scene_name, self.changes)
+
+
+# Distances at which the paper's method can see them: far in the pool, near in the lake.
+LEGS = (
+    Leg(
+        "pool",
+        7.0,
+        {"vehicle.distance_m": 5.0, "vehicle.approach": {"to_m": 1.6, "duration_s": 7.0}},
+    ),
+    Leg(
+        "lake",
+        5.0,
+        {"vehicle.distance_m": 1.4, "vehicle.approach": {"to_m": 0.9, "duration_s": 5.0}},
+    ),
+)
+COUNT = sum(leg.count for leg in LEGS)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moment:
+    """The vehicle's frame and mask, what it found, and both sides' state; time over all dives."""
 
     index: int
     time_s: float
-    frame_bgr: NDArray[np.uint8]
+    place: str
+    scene: Scene
+    frame: Frame
     mask: NDArray[np.bool_]
     detection: Detection
-    dock_hue_deg: float
-    truth: scene.TruePose
+    step: Step
 
 
-def run(geometry: DockGeometry, seed: int = 0) -> Iterator[Step]:
-    """The whole approach; deterministic by ``seed``."""
-    rng = np.random.default_rng(seed)
-    dock = Dock()
-    detector = Detector(scene.VEHICLE_CAMERA, geometry, method="paper")
-    for index in range(round(scene.DURATION_S * FRAME_RATE_HZ)):
-        time_s = index / FRAME_RATE_HZ
-        width, height = scene.DOCK_CAMERA
-        frame = scene.dock_frame(time_s, rng)
-        dock.frame(frame, width, height, "rgb565", round(1000 * time_s))
-        seen = scene.vehicle_frame(time_s, led_light(dock.duties), geometry, rng)
-        detection = detector.process(seen, time_s)
-        yield Step(
-            index,
-            time_s,
-            seen,
-            detector.mask,
-            detection,
-            degrees(dock.marker_hue),
-            scene.true_pose(time_s),
-        )
+def run(jobs: int) -> Iterator[Moment]:
+    """All of it in that many processes, the same in any number.
+
+    The vehicle starts anew with each dive, as the dock does.
+    """
+    start_s, index = 0.0, 0
+    for leg in LEGS:
+        scene = leg.scene()
+        simulation = Simulation(scene)
+        detector = Detector(scene.vehicle_camera.model, scene.dock)
+        steps = list(simulation.steps(np.arange(leg.count) / FRAME_RATE_HZ))
+        frames = rendered(simulation, steps, jobs, _as_it_is)
+        for step, frame in zip(steps, frames, strict=True):
+            detection = detector.process(frame.image_bgr, step.time_s)
+            yield Moment(
+                index=index,
+                time_s=start_s + step.time_s,
+                place=leg.scene_name,
+                scene=scene,
+                frame=frame,
+                mask=detector.mask,
+                detection=detection,
+                step=step,
+            )
+            index += 1
+        start_s += leg.duration_s
 
 
-def led_light(duties: tuple[int, int, int]) -> NDArray[np.float32]:
-    """What a common-anode LED gives at these duties, R, G, B, 0..1."""
-    return 1 - np.array(duties, dtype=np.float32) / np.float32(lib.LED_FULL)
+def _as_it_is(frame: Frame) -> Frame:
+    return frame

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,7 @@ def write_overview(
     _colours(figure.add_subplot(grid[1, :]), records)
     _hues(figure.add_subplot(grid[2, :]), records)
     _ranges(figure.add_subplot(grid[3, :]), records)
-    figure.suptitle("Dock and vehicle choose the same colour, with no message between them")
+    figure.suptitle("Simulated: dock and vehicle choose the same colour, with no message between")
     partial = partial_name(path)
     figure.savefig(partial)
     partial.replace(path)
@@ -49,23 +50,35 @@ def _colours(axes: Axes, records: Sequence[Record]) -> None:
 
 
 def _hues(axes: Axes, records: Sequence[Record]) -> None:
-    times = [r.time_s for r in records]
-    water = [r.detection.background.hue_deg for r in records]
-    axes.plot(times, [np.nan if h is None else h for h in water], color="teal", label="water")
-    axes.plot(times, [r.dock_hue_deg for r in records], color="crimson", label="dock's LEDs")
-    vehicle = [r.detection.marker.hue_deg for r in records]
-    axes.plot(times, vehicle, color="black", linestyle="--", label="vehicle expects")
-    axes.set(ylabel="hue [deg]", xlim=(0, times[-1]))
+    for number, dive in enumerate(_dives(records)):
+        times = [r.time_s for r in dive]
+        water = [r.detection.background.hue_deg for r in dive]
+        known = [np.nan if h is None else h for h in water]
+        vehicle = [r.detection.marker.hue_deg for r in dive]
+        for values, colour, style, label in (
+            (known, "teal", "-", "water"),
+            ([r.dock_hue_deg for r in dive], "crimson", "-", "dock's LEDs"),
+            (vehicle, "black", "--", "vehicle expects"),
+        ):
+            axes.plot(times, values, style, color=colour, label=label if number == 0 else None)
+    axes.set(ylabel="hue [deg]", xlim=(0, records[-1].time_s))
     axes.legend(loc="center left", fontsize=9)
     axes.grid(alpha=0.3)
 
 
 def _ranges(axes: Axes, records: Sequence[Record]) -> None:
-    times = [r.time_s for r in records]
-    axes.plot(times, [r.true_range_m for r in records], color="0.6", linewidth=4, label="truth")
+    for number, dive in enumerate(_dives(records)):
+        times = [r.time_s for r in dive]
+        label = "truth" if number == 0 else None
+        axes.plot(times, [r.true_range_m for r in dive], color="0.6", linewidth=4, label=label)
     found = [(r.time_s, r.range_m) for r in records if r.range_m is not None]
     if found:
         axes.plot(*zip(*found, strict=True), ".", color="green", label="measured")
-    axes.set(xlabel="time [s]", ylabel="range [m]", xlim=(0, times[-1]))
+    axes.set(xlabel="time [s]", ylabel="range [m]", xlim=(0, records[-1].time_s))
     axes.legend(loc="upper right", fontsize=9)
     axes.grid(alpha=0.3)
+
+
+def _dives(records: Sequence[Record]) -> list[list[Record]]:
+    """Nothing is to be joined by a line from one dive to the next."""
+    return [list(dive) for _, dive in groupby(records, key=lambda r: r.place)]

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.demo.loop import Step
-from chromadock.demo.scene import TruePose
+from chromadock.demo.loop import Moment
 from chromadock.detection import Detection
 from chromadock.method import HUE_RANGE
-from chromadock.rotation import matrix_from_quaternion, quaternion_from_matrix
+from chromadock.rotation import matrix_from_quaternion
+from chromadock.sim.truth import Truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,14 +21,22 @@ class Record:
 
     index: int
     time_s: float
+    place: str
     detection: Detection
     dock_hue_deg: float
-    truth: TruePose
+    truth: Truth
 
     @classmethod
-    def of(cls, step: Step) -> Record:
-        """The part of a step worth keeping."""
-        return cls(step.index, step.time_s, step.detection, step.dock_hue_deg, step.truth)
+    def of(cls, moment: Moment) -> Record:
+        """The part of a moment worth keeping."""
+        return cls(
+            moment.index,
+            moment.time_s,
+            moment.place,
+            moment.detection,
+            moment.step.dock_hue_deg,
+            moment.frame.truth,
+        )
 
     @property
     def dock_rgb(self) -> tuple[int, int, int]:
@@ -38,7 +46,7 @@ class Record:
     @property
     def true_range_m(self) -> float:
         """Distance of the dock from the camera."""
-        return float(np.linalg.norm(self.truth.t))
+        return self.truth.range_m
 
     @property
     def range_m(self) -> float | None:
@@ -49,8 +57,8 @@ class Record:
     @property
     def position_error_m(self) -> float | None:
         """Distance between measured and true position."""
-        pose = self.detection.pose
-        return None if pose is None else float(np.linalg.norm(np.array(pose.t) - self.truth.t))
+        pose, truth = self.detection.pose, self.truth.T_camera_dock.t
+        return None if pose is None else float(np.linalg.norm(np.array(pose.t) - truth))
 
     @property
     def attitude_error_deg(self) -> float | None:
@@ -58,7 +66,7 @@ class Record:
         pose = self.detection.pose
         if pose is None:
             return None
-        difference = matrix_from_quaternion(pose.q_wxyz) @ self.truth.R.T
+        difference = matrix_from_quaternion(pose.q_wxyz) @ self.truth.T_camera_dock.R.T
         cosine = (np.trace(difference) - 1) / 2
         return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
 
@@ -69,14 +77,12 @@ class Record:
         return min(apart, 360 - apart)
 
     def to_dict(self) -> dict[str, Any]:
-        """The detection's JSON object with the dock's hue and the true pose beside it."""
+        """The detection's JSON object with the dock's hue and the truth beside it."""
         return {
+            **self.detection.to_dict(),
             "frame": self.index,
             "time_s": round(self.time_s, 3),
-            **self.detection.to_dict(),
+            "place": self.place,
             "dock": {"hue_deg": round(self.dock_hue_deg, 2)},
-            "truth": {
-                "t": [round(float(v), 4) for v in self.truth.t],
-                "q_wxyz": [round(v, 6) for v in quaternion_from_matrix(self.truth.R)],
-            },
+            "truth": self.truth.to_dict(),
         }

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import difflib
 import math
-import sys
 from pathlib import Path
 
 from chromadock.errors import ChromadockError
 from chromadock.parameter_table import PARAMETERS, Parameter
 from chromadock.text import one_line
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from chromadock.toml_file import read_toml
 
 TABLE = {p.name: p for p in PARAMETERS}
 
@@ -89,20 +84,7 @@ def read_file(path: Path) -> dict[str, float]:
     ChromadockError
         One line: the file, the name, what may be set.
     """
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ChromadockError(
-            f"{path}: cannot be read ({error.strerror}): give a TOML file of NAME = value"
-        ) from None
-    except UnicodeDecodeError:
-        raise ChromadockError(
-            f"{path}: not a text file: give a TOML file of NAME = value"
-        ) from None
-    except tomllib.TOMLDecodeError as error:
-        raise ChromadockError(
-            f"{path}: not valid TOML ({one_line(error)}): correct that line"
-        ) from None
+    content = read_toml(path, "give a TOML file of NAME = value")
     if not content:
         raise ChromadockError(f"{path}: sets nothing: write lines of NAME = value")
     values: dict[str, float] = {}

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-# Standard deviations of the Gaussians, pixels, half an octave apart: spots of 1.4 to 23
-# pixels radius, a marker from beyond five metres to half a metre at 640 x 480.
-SIGMAS = tuple(2 ** (k / 2) for k in range(9))
+from chromadock.paper.peaks import SIGMAS, Spot, find_peaks
 
 # A lit core clips to near white and fails the mask, which leaves a ring.  The authors' code
 # widens the mask by a 5 x 5 blur first; without it few markers nearer than two metres are
 # found (docs/method.md has the figures).
 _WIDEN = np.ones((5, 5), np.uint8)
-
-# A disc answers with up to 2/e = 0.74, a long bar with at most 0.48, an edge with 0.24:
-# halfway between disc and bar asks for roundness.
-MIN_RESPONSE = 0.5
 
 # Fewer pixels than these are noise or a JPEG block's corner.
 MIN_AREA = 4
@@ -27,16 +21,6 @@ MIN_AREA = 4
 # More spots than these are no view of four markers; the strongest are kept, so that a
 # frame full of noise costs a bounded time.
 MAX_BLOBS = 64
-
-
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """Centre and radius in pixels; response of the scale-normalised filter, 0..1."""
-
-    x: float
-    y: float
-    radius: float
-    response: float
 
 
 def find_spots(mask: NDArray[np.uint8]) -> list[Spot]:
@@ -55,38 +39,13 @@ def find_spots(mask: NDArray[np.uint8]) -> list[Spot]:
 
     spots: list[Spot] = []
     widened = np.asarray(cv2.dilate(window, _WIDEN), np.uint8)
-    for peak in sorted(_peaks(widened), key=lambda p: -p.response):
+    for peak in sorted(find_peaks(widened), key=lambda p: -p.response):
         spot = _centred(window, peak)
         if spot is not None and not any(_same_place(spot, s) for s in spots):
             spots.append(spot)
             if len(spots) == MAX_BLOBS:
                 break
     return [replace(s, x=s.x + x0, y=s.y + y0) for s in spots]
-
-
-def _peaks(mask: NDArray[np.uint8]) -> list[Spot]:
-    """Local maxima at each scale."""
-    unit = mask.astype(np.float32) / 255
-    peaks = []
-    for sigma in SIGMAS:
-        # A wide Gaussian needs no fine grid; a quarter of the work each octave.
-        step = 1 << max(0, int(np.log2(sigma)) - 1)
-        size = (max(1, unit.shape[1] // step), max(1, unit.shape[0] // step))
-        grid = unit if step == 1 else cv2.resize(unit, size, interpolation=cv2.INTER_AREA)
-        blurred = cv2.GaussianBlur(grid, (0, 0), sigma / step)
-        response = -((sigma / step) ** 2) * cv2.Laplacian(blurred, cv2.CV_32F)
-        highest = response == cv2.dilate(response, np.ones((3, 3), np.uint8))
-        scale_x, scale_y = unit.shape[1] / size[0], unit.shape[0] / size[1]
-        for y, x in np.argwhere(highest & (response >= MIN_RESPONSE)):
-            peaks.append(
-                Spot(
-                    (x + 0.5) * scale_x - 0.5,
-                    (y + 0.5) * scale_y - 0.5,
-                    float(np.sqrt(2) * sigma),
-                    float(response[y, x]),
-                )
-            )
-    return peaks
 
 
 def _centred(mask: NDArray[np.uint8], spot: Spot) -> Spot | None:

@@ -86,12 +86,20 @@ def right_triangles(points: NDArray[np.float64], ratio: float) -> NDArray[np.flo
     legs = points[None, :, :] - points[:, None, :]
     length = np.linalg.norm(legs, axis=2)
     np.fill_diagonal(length, np.nan)  # no leg from a point to itself
-    long, short = length[:, :, None], length[:, None, :]
-    cosine = np.einsum("ijc,ikc->ijk", legs, legs) / (long * short)
+    # In place: with many points most of the time goes into fresh memory.
+    ratio_error = length[:, :, None] / length[:, None, :]
+    ratio_error /= ratio
+    ratio_error -= 1
+    np.abs(ratio_error, out=ratio_error)
+    ratio_error /= RATIO_TOLERANCE
+    i, j, k = _where(ratio_error <= 1)
+    product = legs[i, j, 0] * legs[i, k, 0] + legs[i, j, 1] * legs[i, k, 1]
+    cosine = product / (length[i, j] * length[i, k])
     angle_error = np.abs(cosine) / np.sin(np.radians(ANGLE_TOLERANCE_DEG))
-    ratio_error = np.abs(long / short / ratio - 1) / RATIO_TOLERANCE
-    passed = (angle_error <= 1) & (ratio_error <= 1)
-    return np.where(passed, angle_error**2 + ratio_error**2, np.inf)
+    both = angle_error**2 + ratio_error[i, j, k] ** 2
+    error = np.full(ratio_error.shape, np.inf)
+    error[i, j, k] = np.where(angle_error <= 1, both, np.inf)
+    return error
 
 
 def four_blobs(error: NDArray[np.float64]) -> tuple[int, int, int, int] | None:
@@ -99,11 +107,17 @@ def four_blobs(error: NDArray[np.float64]) -> tuple[int, int, int, int] | None:
 
     ``error`` is that of ``right_triangles``.  None where no four do.
     """
-    best, least = None, np.inf
-    for a, b, c in np.argwhere(np.isfinite(error)):
-        # The fourth point lies across from a: the same triangle at each corner.
-        total = error[a, b, c] + error[b, a, :] + error[c, :, a] + error[:, c, b]
-        fourth = int(total.argmin())
-        if total[fourth] < least:
-            best, least = (int(a), int(b), int(c), fourth), float(total[fourth])
-    return best
+    a, b, c = _where(np.isfinite(error))
+    if not len(a):
+        return None
+    # The fourth point lies across from a: the same triangle at each corner.
+    total = error[a, b, c][:, None] + error[b, a, :] + error[c, :, a] + error[:, c, b].T
+    best, fourth = divmod(int(total.argmin()), total.shape[1])
+    if not np.isfinite(total[best, fourth]):
+        return None
+    return int(a[best]), int(b[best]), int(c[best]), fourth
+
+
+def _where(condition: NDArray[np.bool_]) -> tuple[NDArray[np.intp], ...]:
+    """``np.nonzero``, ten times faster where little is true."""
+    return np.unravel_index(np.flatnonzero(condition), condition.shape)

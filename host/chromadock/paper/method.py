@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from chromadock.camera import CameraModel
 from chromadock.detection import Blob, Point, Pose
 from chromadock.dock import DockGeometry
-from chromadock.paper.blobs import Spot, find_spots
+from chromadock.paper.blobs import find_spots
 from chromadock.paper.constellation import CORNERS, Rectangle, corners, four_blobs, right_triangles
 from chromadock.paper.mask import colour_mask, foreground
+from chromadock.paper.peaks import Spot
 from chromadock.pose import epnp
 from chromadock.stopwatch import Stopwatch
 
@@ -44,10 +45,12 @@ class PaperMethod:
         watch: Stopwatch,
     ) -> Found:
         """Look for the dock in a (H, W, 3) uint8 BGR frame."""
-        mask = colour_mask(frame_bgr, observed) & foreground(frame_bgr, background_bin)
-        self.mask = mask
+        self.mask = colour_mask(frame_bgr, observed) & foreground(frame_bgr, background_bin)
         watch.lap("mask")
+        return self.find_in_mask(self.mask, camera, watch)
 
+    def find_in_mask(self, mask: NDArray[np.uint8], camera: CameraModel, watch: Stopwatch) -> Found:
+        """Look for the dock in a (H, W) uint8 mask, 0 or 255, whatever filter it came from."""
         spots = find_spots(mask)
         watch.lap("blobs")
 

@@ -1,0 +1,141 @@
+"""``chromadock simulate``: frames of a dock under water, with the truth beside them."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import track
+
+from chromadock.detector import MAPPINGS
+from chromadock.errors import ChromadockError
+from chromadock.method import DEFAULT_MAPPING_NAME
+from chromadock.text import plural
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+_SECONDS = 10.0
+_MOST_FRAMES = 1_000_000
+_MOST_FPS = 240.0
+_MOST_JOBS = 256
+
+
+def simulate(
+    scene: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENE",
+            help="A scene that is shipped (pool, lake, sea) or a TOML file laid out like it.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Option(help="A new folder for pictures, or a .mp4.", show_default=False)
+    ],
+    frames: Annotated[
+        int | None, typer.Option(help="How many.", show_default="--seconds times --fps")
+    ] = None,
+    seconds: Annotated[float | None, typer.Option(help="How long.", show_default="10")] = None,
+    fps: Annotated[float, typer.Option(help="Frames a second.")] = 15.0,
+    seed: Annotated[
+        int | None,
+        typer.Option(help="Of waves, motion and noise.", show_default="the scene's"),
+    ] = None,
+    background: Annotated[
+        Path | None,
+        typer.Option(help="Folder of photographs instead of rendered water.", show_default=False),
+    ] = None,
+    mapping: Annotated[
+        str, typer.Option(help=f"From water to marker colour: {', '.join(MAPPINGS)}.")
+    ] = DEFAULT_MAPPING_NAME,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="A key of the scene, e.g. vehicle.distance_m=5; may be repeated.",
+        ),
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(help="Processes.", show_default="one a processor")
+    ] = None,
+) -> None:
+    """Simulate a dock and a vehicle in SCENE, and write what the vehicle sees.
+
+    The dock's colour comes from its firmware, which looks at the water through a
+    camera of its own.  Beside the frames stand truth.jsonl, a line a frame, and
+    camera.yaml for `chromadock detect --camera`.
+    """
+    try:
+        from chromadock.sim.photograph import Photographs
+        from chromadock.sim.recording import open_recording
+        from chromadock.sim.scene import load_scene
+        from chromadock.sim.simulation import Simulation
+        from chromadock.sim.workers import rendered
+    except ModuleNotFoundError as error:
+        raise ChromadockError(
+            f"the simulator needs the package {error.name}: "
+            "run `make setup` in the project's folder"
+        ) from None
+    count = _count(frames, seconds, fps)
+    processes = _processes(jobs)
+    changes = dict(_change(text) for text in set_ or [])
+    if seed is not None:
+        changes["seed"] = seed
+    photographs = None if background is None else Photographs(background)
+    simulation = Simulation(load_scene(scene, changes), mapping, photographs)
+    times = (index / fps for index in range(count))
+    with open_recording(out, simulation.scene.vehicle_camera.model, fps) as recording:
+        made = rendered(simulation, simulation.steps(times), processes, recording.finish)
+        bar = track(
+            made,
+            "simulating",
+            count,
+            console=Console(stderr=True),
+            transient=True,
+            disable=not sys.stderr.isatty(),
+        )
+        for frame in bar:
+            recording.write(frame)
+    print(f"wrote {plural(count, 'frame')} to {out}")
+
+
+def _count(frames: int | None, seconds: float | None, fps: float) -> int:
+    """The number of frames."""
+    if not 0 < fps <= _MOST_FPS:
+        raise ChromadockError(f"--fps is {fps:g}: give frames a second, above 0 .. {_MOST_FPS:g}")
+    if frames is not None and seconds is not None:
+        raise ChromadockError("--frames and --seconds are both given: give one of them")
+    given, wanted = f"--frames is {frames}", frames or 0.0
+    if frames is None:
+        seconds = _SECONDS if seconds is None else seconds
+        given, wanted = f"--seconds is {seconds:g}", seconds * fps
+    if not 1 <= wanted <= _MOST_FRAMES:
+        raise ChromadockError(f"{given}: give 1 to {_MOST_FRAMES} frames")
+    return round(wanted)
+
+
+def _processes(jobs: int | None) -> int:
+    if jobs is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+    if not 1 <= jobs <= _MOST_JOBS:
+        raise ChromadockError(f"--jobs is {jobs}: give 1 to {_MOST_JOBS} processes")
+    return jobs
+
+
+def _change(text: str) -> tuple[str, Any]:
+    """A key and its value, written as in TOML; words need no quotes."""
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise ChromadockError(f"--set {text}: write key=value, e.g. vehicle.distance_m=5")
+    try:
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value.strip()

@@ -1,0 +1,1 @@
+"""The paper's experiments, repeated on simulated frames, and their report."""

@@ -1,0 +1,111 @@
+"""The processes that do the work: some on this machine, or those of a Dask scheduler."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import dask
+from distributed import Client, LocalCluster
+
+from chromadock.errors import ChromadockError
+from chromadock.evaluate.version import versions
+from chromadock.text import one_line, plural
+
+Warn = Callable[[str], None]
+"""Takes a line that the user should see."""
+
+_CONNECT_S = 10
+
+# Dask has freed memory handed back at once.  Every frame would ask for it again, page by page,
+# which takes a sixth of the whole time.
+_TRIM = "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_"
+_KEPT_BYTES = 1 << 28
+
+
+@contextmanager
+def local_cluster(workers: int) -> Iterator[Client]:
+    """``workers`` processes of one thread each on this machine; a dead one is replaced."""
+    _quiet_dask()
+    with dask.config.set({_TRIM: _KEPT_BYTES}), _deaf_to_ctrl_c():
+        cluster = LocalCluster(  # type: ignore[no-untyped-call]
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=":0",
+            silence_logs=logging.CRITICAL,
+        )
+    with cluster, Client(cluster) as client:  # type: ignore[no-untyped-call]
+        yield client
+
+
+def _quiet_dask() -> None:
+    """Keep its loggers, which have levels of their own, from telling of what is dealt with:
+    lost workers, whose work is done again, and a lost scheduler, which is one line of ours."""
+    for name in list(logging.root.manager.loggerDict):
+        if name.split(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Threads and processes that start meanwhile never get it: only this thread ends the work.
+
+    A terminal sends it to all of them, and each would tell of it in its own way.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def remote_cluster(address: str, warn: Warn) -> Iterator[Client]:
+    """The workers of a scheduler that somebody started, such as ``tcp://10.0.0.7:8786``.
+
+    Other versions there than here are told to ``warn``: their figures may differ.
+
+    Raises
+    ------
+    ChromadockError
+        Where no scheduler answers, or it has no workers, or they lack this package.
+    """
+    _quiet_dask()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # told below, in a line
+            client = Client(address, timeout=_CONNECT_S)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError) as error:
+        raise ChromadockError(
+            f"--scheduler {address}: nobody answers ({one_line(error, 80)}): "
+            "start `dask scheduler` there, or leave the option out"
+        ) from None
+    with client:
+        _compare_versions(client, address, warn)
+        yield client
+
+
+def _compare_versions(client: Client, address: str, warn: Warn) -> None:
+    """Warn where a worker would compute with other code than this process."""
+    try:
+        theirs = client.run(versions)
+    except ModuleNotFoundError as error:
+        raise ChromadockError(
+            f"--scheduler {address}: its workers lack the package {error.name}: "
+            "install chromadock[evaluate] there"
+        ) from None
+    if not theirs:
+        raise ChromadockError(
+            f"--scheduler {address}: it has no workers: start `dask worker {address}` somewhere"
+        )
+    for what, here in versions().items():
+        others = {there.get(what, "unknown") for there in theirs.values()} - {here}
+        if others:
+            warn(
+                f"warning: {what} is {here} here and {' and '.join(sorted(others))} on "
+                f"{plural(len(theirs), 'worker')}: figures may differ"
+            )

@@ -1,0 +1,62 @@
+"""What the vehicle works out of a frame before any filter, once for all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from cv2.typing import MatLike
+from numpy.typing import NDArray
+
+from chromadock.colour.background import BackgroundColour, background_colour
+from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
+from chromadock.colour.working_image import smooth, working_image
+from chromadock.paper.mask import blurred_grey
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """A frame with what the filters share.
+
+    ``frame_bgr`` and ``hsv`` (OpenCV's) are (H, W, 3) uint8, ``grey`` (H, W) uint8 blurred;
+    ``marker_hues`` has the rolling mean 0..1535 for each of ``MAPPINGS``.
+    """
+
+    frame_bgr: NDArray[np.uint8]
+    hsv: MatLike
+    grey: NDArray[np.uint8]
+    background: BackgroundColour
+    marker_hues: Mapping[str, int]
+
+
+class Vehicle:
+    """The vehicle's colour decision frame after frame, for every mapping at once."""
+
+    def __init__(self) -> None:
+        self._rolling = {mapping: RollingHue() for mapping in MAPPINGS}
+
+    def decide(
+        self, frame_bgr: NDArray[np.uint8], time_s: float
+    ) -> tuple[BackgroundColour, dict[str, int]]:
+        """Water's colour and rolling mean of the marker's hue, as ``Detector`` finds them."""
+        small_rgb = np.ascontiguousarray(working_image(frame_bgr)[..., ::-1])
+        background = background_colour(smooth(small_rgb))
+        now_ms = round(time_s * 1000)
+        hues = {
+            mapping: rolling.add(marker_hue(background, mapping), now_ms)
+            for mapping, rolling in self._rolling.items()
+        }
+        return background, hues
+
+    def view(self, frame_bgr: NDArray[np.uint8], time_s: float) -> View:
+        """Take the next frame, (H, W, 3) uint8 BGR."""
+        background, hues = self.decide(frame_bgr, time_s)
+        return View(
+            frame_bgr,
+            cv2.cvtColor(frame_bgr, cv2.COLOR_BGR2HSV),
+            blurred_grey(frame_bgr),
+            background,
+            hues,
+        )

@@ -1,0 +1,166 @@
+"""Dock and vehicle side by side in one scene, with no message between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from chromadock.colour.hsv import degrees, rgb_from_hsv
+from chromadock.detector import MAPPINGS
+from chromadock.errors import ChromadockError
+from chromadock.link.rgb565 import to_rgb565
+from chromadock.method import DEFAULT_MAPPING_NAME
+from chromadock.sim.camera_spec import CameraSpec
+from chromadock.sim.control import CameraSettings
+from chromadock.sim.photograph import Photographs
+from chromadock.sim.renderer import Frame, Renderer
+from chromadock.sim.scene import Scene
+
+RGB = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One moment: all that the vehicle's frame depends on, and what the dock decided.
+
+    Parameters
+    ----------
+    index, time_s
+        Number of the step, seconds.
+    led_share
+        What the dock's LEDs give, share of full power, R, G, B.
+    settings
+        The vehicle camera's.
+    dock_hue_deg
+        The hue that the dock's firmware shows, 0..360.
+    dock_background
+        The water's colour as the dock's firmware sees it, R, G, B, 0..255.
+    dock_settings
+        The dock camera's.
+    """
+
+    index: int
+    time_s: float
+    led_share: tuple[float, float, float]
+    settings: CameraSettings
+    dock_hue_deg: float
+    dock_background: RGB
+    dock_settings: CameraSettings
+
+
+class Simulation:
+    """A run of both sides; pickles, and any process makes the same frames of the same steps.
+
+    Parameters
+    ----------
+    scene
+        See ``load_scene``.
+    mapping
+        From water to marker colour, the dock's setting of that name.
+    photographs
+        Backgrounds instead of rendered water, for both cameras.
+
+    Raises
+    ------
+    ChromadockError
+        For an unknown mapping.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        mapping: str = DEFAULT_MAPPING_NAME,
+        photographs: Photographs | None = None,
+    ) -> None:
+        if mapping not in MAPPINGS:
+            raise ChromadockError(
+                f"unknown mapping '{mapping}': choose one of {', '.join(MAPPINGS)}"
+            )
+        self.scene = scene
+        self.mapping = mapping
+        self._photographs = photographs
+        self._vehicle = Renderer(scene, "vehicle", photographs)
+        self._dock = Renderer(scene, "dock", photographs)
+
+    def steps(self, times: Iterable[float]) -> Iterator[Step]:
+        """Both sides' state at ascending times, seconds: quick, but one after the other.
+
+        At each of them the dock's camera takes a frame, the firmware core decides on it and
+        drives the LEDs; the vehicle's camera adapts.  Each call starts both sides anew.
+
+        Raises
+        ------
+        ChromadockError
+            Where the firmware's package is missing.
+        """
+        dock, led_full = _firmware(self.mapping)
+        dock_camera = _Adapting(self.scene.dock_camera, self._dock)
+        vehicle_camera = _Adapting(self.scene.vehicle_camera, self._vehicle)
+        led_share = (0.0, 0.0, 0.0)
+        for index, time_s in enumerate(times):
+            dock_settings = dock_camera.settings(time_s, led_share)
+            seen = self._dock.frame(time_s, led_share, dock_settings, index).image_bgr
+            height, width = seen.shape[:2]
+            dock.frame(to_rgb565(seen), width, height, "rgb565", round(1000 * time_s))
+            led_share = _led_share(dock.duties, led_full)
+            settings = vehicle_camera.settings(time_s, led_share)
+            water = dock.c.background
+            yield Step(
+                index=index,
+                time_s=time_s,
+                led_share=led_share,
+                settings=settings,
+                dock_hue_deg=degrees(dock.marker_hue),
+                dock_background=rgb_from_hsv(water.hue, water.saturation, water.value),
+                dock_settings=dock_settings,
+            )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Renderers are quickly built and large to send.
+        return Simulation, (self.scene, self.mapping, self._photographs)
+
+    def frame(self, step: Step) -> Frame:
+        """The vehicle camera's frame of a step."""
+        return self._vehicle.frame(step.time_s, step.led_share, step.settings, step.index)
+
+    def dock_frame(self, step: Step) -> Frame:
+        """The dock camera's frame of a step, as its picture before RGB565."""
+        return self._dock.frame(step.time_s, step.led_share, step.dock_settings, step.index)
+
+
+class _Adapting:
+    """A camera's settings at ascending times."""
+
+    def __init__(self, camera: CameraSpec, renderer: Renderer) -> None:
+        self._control = camera.auto_control()
+        self._adapts = "auto" in (camera.control.exposure, camera.control.white_balance)
+        self._renderer = renderer
+        self._settings: CameraSettings | None = None
+
+    def settings(self, time_s: float, led_share: tuple[float, float, float]) -> CameraSettings:
+        """At a moment; nothing is metered once all is locked."""
+        if self._adapts or self._settings is None:
+            metered = self._renderer.meter(time_s, led_share)
+            self._settings = self._control.update(metered, time_s)
+        return self._settings
+
+
+def _firmware(mapping: str) -> tuple[Any, int]:
+    """The dock's firmware core, and the duty of a channel that is always on."""
+    try:
+        from chromadock_firmware import Dock, Settings, lib
+    except ModuleNotFoundError as error:
+        raise ChromadockError(
+            f"the simulation needs the package {error.name}: "
+            "run `make setup` in the project's folder"
+        ) from None
+    return Dock(Settings(mapping=mapping)), int(lib.LED_FULL)
+
+
+def _led_share(duties: tuple[int, int, int], full: int) -> tuple[float, float, float]:
+    """What common-anode LEDs, which are on while their pin is low, give at these duties."""
+    red, green, blue = (1 - np.array(duties) / full).tolist()
+    return red, green, blue

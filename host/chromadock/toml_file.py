@@ -1,0 +1,43 @@
+"""Reads the TOML files that users write."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from chromadock.errors import ChromadockError
+from chromadock.text import one_line
+from chromadock.validation import explain
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+def read_toml(path: str | Path, mend: str = "give a TOML file") -> dict[str, Any]:
+    """The keys and values of a TOML file; ``mend`` says what file is wanted.
+
+    Raises
+    ------
+    ChromadockError
+        One line with the file, what is wrong and the mend.
+    """
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ChromadockError(f"{path}: cannot be read ({error.strerror}): {mend}") from None
+    except UnicodeDecodeError:
+        raise ChromadockError(f"{path}: not a text file: {mend}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ChromadockError(
+            f"{path}: not valid TOML ({one_line(error)}): correct that line"
+        ) from None
+
+
+def one_line_error(path: str | Path, error: ValidationError) -> ChromadockError:
+    """The first fault of a file: its name, the key, what stands there, what may stand there."""
+    return ChromadockError(f"{path}: {explain(error)}")

@@ -1,0 +1,213 @@
+"""docs/results.md and its figures, written from made-up runs."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+
+import polars as pl
+import pytest
+import results
+import results_document
+from evaluation_data import write_evaluation
+from results_claims import Claim, claims
+from results_document import Run, document, figures
+from results_tables import realism, sweep_table
+
+from chromadock import ChromadockError
+from chromadock.evaluate import formats
+from chromadock.evaluate.drawings import Drawing
+from chromadock.evaluate.frames import Evaluation
+from chromadock.evaluate.statistics import wilson
+
+MAX_SVG_BYTES = 300_000
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("evaluation")
+    write_evaluation(folder, frames=24)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def run(out: Path) -> Run:
+    return Run.read(out)
+
+
+@pytest.fixture(scope="module")
+def shown(run: Run) -> dict[str, Drawing]:
+    return figures(run)
+
+
+@pytest.fixture(scope="module")
+def docs(run: Run, shown: dict[str, Drawing], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("docs")
+    (folder / "images").mkdir()
+    (folder / "images" / "results-of-yesterday.svg").touch()
+    (folder / "images" / "wiring.svg").touch()
+    results.write(folder, document(run, shown), shown)
+    return folder
+
+
+def of(out: Path, experiment: str) -> pl.DataFrame:
+    return Evaluation.read(out).frames.filter(pl.col("experiment") == experiment)
+
+
+def test_every_figure_that_is_named_is_there_and_small_and_no_other(docs: Path) -> None:
+    named = re.findall(r"!\[[^\]]*\]\(images/([^)]*)\)", (docs / "results.md").read_text())
+    assert len(named) == len(set(named)) == 8
+    there = {path.name for path in (docs / "images").iterdir()}
+    assert there == {*named, "wiring.svg"}
+    for name in named:
+        svg = (docs / "images" / name).read_bytes()
+        assert svg.startswith(b"<svg") and len(svg) < MAX_SVG_BYTES
+
+
+def test_the_document_says_that_it_is_simulated_and_by_what(docs: Path) -> None:
+    text = (docs / "results.md").read_text()
+    assert "**All of this is simulated.**" in text
+    captions = [line for line in text.splitlines() if line.startswith("*") and "**" not in line]
+    assert len(captions) == 8
+    assert all(line.startswith("*Simulated.") for line in captions)
+    assert "| lake | 12 | 288 | 7 | `0123456789abcdef` |" in text
+    assert "chromadock 0.1.0, jerlov 0.22.0." in text
+    assert str(Path.cwd()) not in text and "/tmp" not in text
+
+
+def test_tables_are_tables(docs: Path) -> None:
+    lines = (docs / "results.md").read_text().splitlines()
+    tables = [list(t) for bar, t in groupby(lines, lambda line: line.startswith("|")) if bar]
+    assert len(tables) == 9
+    for table in tables:
+        assert len(table) > 2
+        assert set(table[1]) == {"|", "-"}
+        assert len({line.count("|") for line in table}) == 1
+
+
+def test_the_recall_in_the_table_is_that_of_the_frames(out: Path, docs: Path) -> None:
+    rows = of(out, "pool").filter(
+        (pl.col("mapping") == "ternary") & (pl.col("distance_m") == 5) & pl.col("markers_in_view")
+    )
+    (line,) = [
+        line
+        for line in (docs / "results.md").read_text().splitlines()
+        if line.startswith("| pool, ternary, 5 m |") and line.count("%") == 5
+    ]
+    for name, cell in zip(
+        ("adaptive ternary", "adaptive complement", "static pool", "static lake", "intensity"),
+        line.split("|")[2:],
+        strict=False,
+    ):
+        correct = rows.filter(pl.col("filter") == name)["correct"]
+        share = 100 * correct.sum() / len(correct)
+        assert cell.split()[0] == formats.number(share)
+        low, high = (100 * end for end in wilson(correct.sum(), len(correct)))
+        shown = [float(end) for end in re.findall(r"\((.*)–(.*)\)", cell)[0]]
+        assert shown[0] <= low + 0.5 and shown[1] >= high - 0.5
+
+
+def test_rendered_water_is_compared_with_photographs_from_one_to_three_metres(out: Path) -> None:
+    frames = of(out, "rendered water")
+    easy = frames.with_columns(correct=pl.lit(True))
+    hard = frames.with_columns(correct=pl.col("distance_m") < 2)
+    same = realism(easy, easy)
+    assert same.within and same.telling and same.worst_points == 0
+    apart = realism(easy, hard)
+    assert not apart.within and apart.worst_points == 100
+    never = frames.with_columns(correct=pl.lit(False))
+    assert realism(never, never).within and not realism(never, never).telling
+    far = hard.with_columns(distance_m=pl.col("distance_m") * 2)
+    assert realism(easy.with_columns(distance_m=pl.col("distance_m") * 2), far).worst_points == 0
+    assert realism(easy, frames.clear()) is None
+
+
+def test_without_photographs_the_document_says_so(out: Path, tmp_path: Path) -> None:
+    copy = Path(shutil.copytree(out, tmp_path / "out"))
+    table = pl.read_parquet(out / "frames.parquet").filter(pl.col("distance_m") == 1)
+    table.filter(pl.col("experiment").is_in(["lake", "pool"])).write_parquet(
+        copy / "frames.parquet"
+    )
+    run = Run.read(copy)
+    text = document(run, figures(run))
+    assert "Not run: there were no photographs" in text
+    assert "Beyond the paper" not in text
+    table.filter(pl.col("experiment") == "lake").write_parquet(copy / "frames.parquet")
+    with pytest.raises(ChromadockError, match="not the experiments lake and pool"):
+        Run.read(copy)
+
+
+def test_a_sweep_tells_where_the_dock_is_lost(out: Path) -> None:
+    (tint, _) = Evaluation.read(out).sweeps
+    key = tint.keys[0]
+    frames = tint.frames.with_columns(correct=pl.col(key).is_between(0.8, 1.2))
+    table = sweep_table(type(tint)(tint.experiment, tint.keys, frames))
+    assert table.found and table.lost == ["0.7", "1.3"]
+    assert [row.setting for row in table.rows] == [["0.7"], ["0.85"], ["1"], ["1.15"], ["1.3"]]
+
+
+def swapped(frames: pl.DataFrame, one: str, other: str) -> pl.DataFrame:
+    """As if two filters had each other's results."""
+    return frames.with_columns(pl.col("filter").replace({one: other, other: one}))
+
+
+def agreed(found: list[Claim]) -> dict[str, bool]:
+    return {claim.name: claim.agrees for claim in found}
+
+
+def test_claims_are_judged_by_the_frames(out: Path) -> None:
+    lake, pool = of(out, "lake"), of(out, "pool")
+    found = agreed(claims(lake, pool))
+    # These frames are made so that the dock is found at 3 m and tuned filters pass least.
+    assert {name for name, agrees in found.items() if not agrees} == {"reach-lake", "selective"}
+
+    ternary, static, other = "adaptive ternary", "static pool", "static lake"
+    assert not agreed(claims(swapped(lake, ternary, static), pool))["static-lake"]
+    assert not agreed(claims(lake, swapped(pool, ternary, other)))["static-pool"]
+    assert not agreed(claims(lake, swapped(pool, ternary, "adaptive complement")))["complement"]
+    assert not agreed(claims(swapped(lake, static, other), pool))["tuned"]
+    apart = pool.with_columns(hue_disagreement_deg=pl.lit(30.0))
+    assert not agreed(claims(lake, apart))["agreement"]
+    blind = pool.with_columns(correct=pl.lit(False))
+    assert not agreed(claims(lake, blind))["reach-pool"]
+    noisy = pool.with_columns(passed=pl.lit(0.5))
+    assert not agreed(claims(lake, noisy))["nothing"]
+    near = lake.with_columns(correct=pl.col("distance_m") < 2, passed=pl.lit(0.0))
+    assert agreed(claims(near, pool))["reach-lake"]
+    assert agreed(claims(near, pool))["selective"] is False
+    clean = pool.with_columns(
+        passed=pl.when(pl.col("filter") == ternary).then(0.0).otherwise(pl.col("passed"))
+    )
+    assert agreed(claims(near, clean))["selective"]
+
+
+def test_every_disagreement_is_explained(
+    run: Run, shown: dict[str, Drawing], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wrong = [replace(claim, agrees=False) for claim in claims(run.of("lake"), run.of("pool"))]
+    monkeypatch.setattr(results_document, "claims", lambda *_: wrong)
+    lines = document(run, shown).splitlines()
+    for claim in wrong:
+        (explained,) = [line for line in lines if line.startswith(f"**{claim.paper}**")]
+        assert len(explained) > len(claim.paper) + 40
+
+
+def test_the_tuning_is_shown(docs: Path) -> None:
+    assert "| pool | 119–214 | 20–65 | 127–255 | 0.65 |" in (docs / "results.md").read_text()
+
+
+def test_a_run_that_fails_writes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    experiments = tmp_path / "experiments"
+    experiments.mkdir()
+    (experiments / "bad.toml").write_text('name = "bad"\nsurprise = 1\n')
+    monkeypatch.setattr(results, "EXPERIMENTS", experiments)
+    monkeypatch.setattr(results, "OUT", tmp_path / "out")
+    monkeypatch.setattr(results, "DOCS", tmp_path / "docs")
+    assert results.main() == 2
+    assert not (tmp_path / "docs").exists()
+    assert not capsys.readouterr().out

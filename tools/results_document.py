@@ -1,0 +1,112 @@
+"""docs/results.md and its figures, from the frames of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import polars as pl
+from jinja2 import FileSystemLoader
+from results_claims import claims
+from results_tables import (
+    REALISM_M,
+    REALISM_POINTS,
+    realism,
+    recall_table,
+    sweep_table,
+    tuning_table,
+)
+
+from chromadock import method
+from chromadock.errors import ChromadockError
+from chromadock.evaluate import drawings
+from chromadock.evaluate.drawings import Drawing
+from chromadock.evaluate.frames import Evaluation
+from chromadock.evaluate.gallery import read_gallery
+from chromadock.evaluate.provenance import read_provenance, sources, versions_line
+from chromadock.evaluate.rendering import environment, gallery_svg
+from chromadock.evaluate.style import filters
+from chromadock.evaluate.tables import places, ternary_against
+
+LAKE, POOL = "lake", "pool"
+RENDERED, PHOTOGRAPHS = "rendered water", "photographs"
+"""Experiments by name."""
+
+SHOWN_M = (1.0, 3.0)
+SHOWN_WIDTH = 240
+"""Of the gallery in the document: places, and pixels of a picture."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """What ``chromadock evaluate`` left in the folder ``out``."""
+
+    out: Path
+    evaluation: Evaluation
+
+    @classmethod
+    def read(cls, out: Path) -> Run:
+        """The run in ``out``.
+
+        Raises:
+            ChromadockError: it is not one, or not of the paper's experiments.
+        """
+        run = cls(out, Evaluation.read(out))
+        if not run.of(LAKE).height or not run.of(POOL).height:
+            raise ChromadockError(f"{out}: not the experiments {LAKE} and {POOL}: run make results")
+        return run
+
+    def of(self, *experiments: str) -> pl.DataFrame:
+        """The frames of experiments that swept nothing."""
+        return self.evaluation.still.filter(pl.col("experiment").is_in(experiments))
+
+
+def figures(run: Run) -> dict[str, Drawing]:
+    """All figures, each with an SVG, by name."""
+    return {drawing.name: drawing for drawing in _figures(run)}
+
+
+def _figures(run: Run) -> Iterator[Drawing]:
+    paper = run.of(LAKE, POOL)
+    yield drawings.passed(paper)
+    yield _gallery(run.out, paper)
+    yield from drawings.measured(paper)
+    both = run.of(RENDERED, PHOTOGRAPHS)
+    if both.height:
+        recall = next(drawings.measured(both))
+        yield replace(recall, name="photographs", title="Finding the dock before photographs")
+    for sweep in run.evaluation.sweeps:
+        yield drawings.swept(sweep)
+
+
+def _gallery(out: Path, paper: pl.DataFrame) -> Drawing:
+    """The first run at some places, in one drawing."""
+    near = paper.filter(pl.col("distance_m").is_in(SHOWN_M))
+    groups = near.unique(["experiment", "mapping", "distance_m"], keep="first", maintain_order=True)
+    exhibits = read_gallery(out, list(groups["run"]), filters(paper), SHOWN_WIDTH)
+    return drawings.gallery(paper, exhibits, gallery_svg(exhibits))
+
+
+def document(run: Run, shown: Mapping[str, Drawing]) -> str:
+    """The text; ``shown`` are its figures."""
+    paper = run.of(LAKE, POOL)
+    provenance = read_provenance(run.out)
+    template = environment(FileSystemLoader(Path(__file__).parent), markup=False)
+    return template.get_template("results.md.jinja").render(
+        figures=shown,
+        ratios=ternary_against(paper),
+        recall=recall_table(paper),
+        filters=filters(run.evaluation.frames),
+        places=list(places(paper)),
+        sweeps=[(sweep, sweep_table(sweep)) for sweep in run.evaluation.sweeps],
+        realism=realism(run.of(RENDERED), run.of(PHOTOGRAPHS)),
+        near_m=REALISM_M,
+        points=REALISM_POINTS,
+        claims=claims(run.of(LAKE), run.of(POOL)),
+        tuning=tuning_table(run.out),
+        sources=sources(provenance, run.evaluation.frames),
+        versions=versions_line(provenance),
+        method=method,
+        zip=zip,
+    )

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from lit import add_led, to_encoded, to_linear
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.colour.background import background_colour
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.working_image import smooth, working_image
-from chromadock.demo.light import add_led, to_encoded, to_linear
 
 SIZE = (640, 480)
 CAMERA = CameraModel.nominal(*SIZE)

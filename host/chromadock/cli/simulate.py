@@ -92,7 +92,7 @@ def simulate(
     photographs = None if background is None else Photographs(background)
     simulation = Simulation(load_scene(scene, changes), mapping, photographs)
     times = (index / fps for index in range(count))
-    with open_recording(out, simulation.scene.vehicle_camera.model, fps) as recording:
+    with open_recording(out, simulation.scene.vehicle_camera, fps) as recording:
         made = rendered(simulation, simulation.steps(times), processes, recording.finish)
         bar = track(
             made,

@@ -1,1 +1,1 @@
-"""A closed loop without hardware: simple water, the real firmware core, the real detector."""
+"""A closed loop without hardware: simulated water, the real firmware core, the real detector."""

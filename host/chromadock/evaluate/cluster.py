@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import dask
-from distributed import Client, LocalCluster
+from distributed import Client, LocalCluster, Worker, WorkerPlugin
 
 from chromadock.errors import ChromadockError
 from chromadock.evaluate.version import versions
@@ -20,26 +20,39 @@ Warn = Callable[[str], None]
 
 _CONNECT_S = 10
 
-# Dask has freed memory handed back at once.  Every frame would ask for it again, page by page,
-# which takes a sixth of the whole time.
-_TRIM = "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_"
-_KEPT_BYTES = 1 << 28
+# By default Dask has the C library (glibc; others ignore this) hand memory back at once, and
+# arrays of a picture's size are mapped anew each time: half of the whole time would go into that.
+_ENVIRONMENT = "distributed.nanny.pre-spawn-environ"
+_KEEP_MEMORY = {
+    f"{_ENVIRONMENT}.MALLOC_TRIM_THRESHOLD_": 1 << 28,
+    f"{_ENVIRONMENT}.MALLOC_MMAP_THRESHOLD_": 1 << 25,  # the most that it takes
+}
 
 
 @contextmanager
 def local_cluster(workers: int) -> Iterator[Client]:
     """``workers`` processes of one thread each on this machine; a dead one is replaced."""
     _quiet_dask()
-    with dask.config.set({_TRIM: _KEPT_BYTES}), _deaf_to_ctrl_c():
-        cluster = LocalCluster(  # type: ignore[no-untyped-call]
+    with (
+        dask.config.set(_KEEP_MEMORY),
+        LocalCluster(  # type: ignore[no-untyped-call]
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
             dashboard_address=":0",
             silence_logs=logging.CRITICAL,
-        )
-    with cluster, Client(cluster) as client:  # type: ignore[no-untyped-call]
+        ) as cluster,
+        Client(cluster) as client,  # type: ignore[no-untyped-call]
+    ):
+        client.register_plugin(_DeafToCtrlC())
         yield client
+
+
+class _DeafToCtrlC(WorkerPlugin):
+    """A terminal sends Ctrl-C to all processes; only the one that the user started tells of it."""
+
+    def setup(self, worker: Worker) -> None:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _quiet_dask() -> None:
@@ -48,19 +61,6 @@ def _quiet_dask() -> None:
     for name in list(logging.root.manager.loggerDict):
         if name.split(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL)
-
-
-@contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """Threads and processes that start meanwhile never get it: only this thread ends the work.
-
-    A terminal sends it to all of them, and each would tell of it in its own way.
-    """
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

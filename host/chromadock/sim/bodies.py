@@ -104,7 +104,7 @@ class Bodies:
             centre, radius = shape.bound
             off = np.linalg.norm(centre - rays * (rays @ centre)[:, None], axis=1)
             if (off < radius + diameter_m).any():
-                hits = shape.hits(rays.astype(np.float32), penumbra_rad)
+                hits = shape.hits(rays.T.astype(np.float32), penumbra_rad)
                 before = hits.range_m < ranges[hits.index] - diameter_m / 2
                 left[hits.index] *= 1 - np.where(before, hits.coverage, 0)
         return left
@@ -168,14 +168,14 @@ def _paint(light: Singles, around: Singles, found: _Found, seen: Seen, waves: Fl
     flicker = seen.flicker(waves)
     if hits.along is not None:
         spots = np.linspace(0, 1, len(waves))
-        flicker = np.stack([np.interp(hits.along, spots, one) for one in flicker.T], axis=1)
+        flicker = np.stack([np.interp(hits.along, spots, one) for one in flicker])
     image *= flicker.astype(np.float32)
-    image += seen.share_before(hits.range_m) * around[pixels]
-    behind = light[pixels]
+    image += seen.share_before(hits.range_m) * around[pixels].T
+    behind = light[pixels].T
     image -= behind
-    image *= hits.coverage[:, None]
+    image *= hits.coverage
     image += behind
-    light[pixels] = image
+    light[pixels] = image.T
 
 
 def _around(light: Singles) -> Singles:

@@ -51,36 +51,41 @@ class Seen:
     down: Floats
 
     def faces(self, normal: Singles, range_m: Singles) -> Singles:
-        """(N, 3) signal of faces, without the water's own light in front of them.
+        """(3, N) signal of faces, without the water's own light in front of them.
 
         Parameters
         ----------
-        normal : (N, 3) outward unit normals, camera frame.
+        normal : (3, N) outward unit normals, camera frame.
         range_m : (N,) metres.
         """
         # Up times the sky and down times what comes from below, in one product.
-        diffuse = np.outer(self.down, self.below - self.sky) / 2
-        signal = normal @ diffuse.astype(np.float32)
-        signal += ((self.sky + self.below) / 2).astype(np.float32)
-        to_sun = np.maximum(-(normal @ self.sun_direction.astype(np.float32)), 0)
-        signal += to_sun[:, None] * self.beam.astype(np.float32)
+        diffuse = np.outer(self.below - self.sky, self.down) / 2
+        signal = diffuse.astype(np.float32) @ normal
+        signal += _column((self.sky + self.below) / 2)
+        to_sun = np.maximum(-(self.sun_direction.astype(np.float32) @ normal), 0)
+        signal += to_sun * _column(self.beam)
         signal *= self._nearer(range_m, self.fade)
         return np.asarray(signal)
 
     def flicker(self, fluctuation: Floats) -> Floats:
-        """(K, 3) factors by which waves change the light on faces, of (K,) the Gaussian g."""
-        sigma = self.flicker_sigma
-        return np.asarray(np.exp(fluctuation[:, None] * sigma - sigma**2 / 2))
+        """(3, K) factors by which waves change the light on faces, of (K,) the Gaussian g."""
+        sigma = self.flicker_sigma[:, None]
+        return np.asarray(np.exp(fluctuation * sigma - sigma**2 / 2))
 
     def share_before(self, range_m: Singles) -> Singles:
-        """(N, 3) share of an endless water's light that comes from within (N,) distances."""
-        behind = self.through.astype(np.float32) * self._nearer(range_m, self.thinning)
+        """(3, N) share of an endless water's light that comes from within (N,) distances."""
+        behind = _column(self.through) * self._nearer(range_m, self.thinning)
         return np.asarray(np.maximum(1 - behind, 0))
 
     def _nearer(self, range_m: Singles, rate: Floats) -> Singles:
-        """(N, 3) how much more there is at other ranges than at the one all is stated for."""
-        exponent = (np.float32(self.range_m) - range_m)[:, None] * rate.astype(np.float32)
+        """(3, N) how much more there is at other ranges than at the one all is stated for."""
+        exponent = (np.float32(self.range_m) - range_m) * _column(rate)
         return np.asarray(np.exp(exponent, out=exponent))
+
+
+def _column(values: Floats) -> Singles:
+    """(3,) to (3, 1)."""
+    return np.asarray(values[:, None], np.float32)
 
 
 class Daylit:

@@ -135,7 +135,7 @@ class Particles:
             np.clip(np.rint(pixels[:, i]).astype(int), 0, side - 1)
             for i, side in enumerate((width, height))
         )
-        hidden = (1 - seen.share_before(range_m.astype(np.float32))) * light[y, x]
+        hidden = (1 - seen.share_before(range_m.astype(np.float32)).T) * light[y, x]
         return np.asarray(face - hidden)
 
 

@@ -22,6 +22,7 @@ from chromadock.errors import ChromadockError
 from chromadock.output import Output, VideoOutput, json_line
 from chromadock.output.base import cannot_write, partial_name
 from chromadock.output.video import VIDEO_CODECS
+from chromadock.sim.camera_spec import CameraSpec
 from chromadock.sim.renderer import Frame
 
 TRUTH = "truth.jsonl"
@@ -54,7 +55,10 @@ class Recording(Output):
 
 
 class FolderRecording(Recording):
-    """``000000.png`` and so on, the truth and the camera, in a new folder.
+    """``000000.jpg`` and so on, the truth and the camera, in a new folder.
+
+    Pictures have the camera's own JPEG quality, which changes next to nothing in what has gone
+    through it once; those of a camera that does not compress are PNG.
 
     Raises
     ------
@@ -62,7 +66,7 @@ class FolderRecording(Recording):
         Where the folder has files in it or cannot be written.
     """
 
-    def __init__(self, path: Path, camera: CameraModel) -> None:
+    def __init__(self, path: Path, camera: CameraSpec) -> None:
         self._path = path
         self._partial = partial_name(path)
         try:
@@ -71,12 +75,13 @@ class FolderRecording(Recording):
                     f"{path}: there are files in it: give a new or an empty folder"
                 )
             self._partial.mkdir()
-            _write_camera(self._partial / CAMERA, camera)
+            _write_camera(self._partial / CAMERA, camera.model)
         except OSError as error:
             self.drop()
             raise cannot_write(path, error) from None
         self._truth = self._partial / TRUTH
-        self.finish = partial(_write_picture, self._partial, path)
+        quality = camera.sensor.jpeg_quality
+        self.finish = partial(_write_picture, self._partial, path, quality)
 
     def write(self, made: Made) -> None:
         """Add a line of truth to the picture that is written already."""
@@ -104,7 +109,7 @@ class VideoRecording(Recording):
         Where one of them is there already or cannot be written.
     """
 
-    def __init__(self, path: Path, camera: CameraModel, fps: float) -> None:
+    def __init__(self, path: Path, camera: CameraSpec, fps: float) -> None:
         self._path = path
         self._beside = [path.with_name(f"{path.name}.{name}") for name in (TRUTH, CAMERA)]
         for place in (path, *self._beside):
@@ -114,7 +119,7 @@ class VideoRecording(Recording):
         self._video = VideoOutput(path, fps)
         self.finish = _with_picture
         try:
-            _write_camera(self._partial_camera, camera)
+            _write_camera(self._partial_camera, camera.model)
         except OSError as error:
             self.drop()
             raise cannot_write(path, error) from None
@@ -147,7 +152,7 @@ class VideoRecording(Recording):
         self._partial_camera.unlink(missing_ok=True)
 
 
-def open_recording(path: Path, camera: CameraModel, fps: float) -> Recording:
+def open_recording(path: Path, camera: CameraSpec, fps: float) -> Recording:
     """A video for a name such as x.mp4, otherwise a folder of pictures.
 
     Raises
@@ -167,10 +172,13 @@ def open_recording(path: Path, camera: CameraModel, fps: float) -> Recording:
     return FolderRecording(path, camera)
 
 
-def _write_picture(folder: Path, wanted: Path, frame: Frame) -> Made:
-    _, encoded = cv2.imencode(".png", frame.image_bgr, _PNG)
+def _write_picture(folder: Path, wanted: Path, quality: int | None, frame: Frame) -> Made:
+    suffix, how = (
+        (".png", _PNG) if quality is None else (".jpg", [cv2.IMWRITE_JPEG_QUALITY, quality])
+    )
+    _, encoded = cv2.imencode(suffix, frame.image_bgr, how)
     try:
-        (folder / f"{frame.truth.index:06d}.png").write_bytes(encoded.tobytes())
+        (folder / f"{frame.truth.index:06d}{suffix}").write_bytes(encoded.tobytes())
     except OSError as error:
         raise cannot_write(wanted, error) from None
     return frame.truth.to_dict(), None

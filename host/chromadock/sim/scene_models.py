@@ -174,6 +174,7 @@ class LampSection(_Section):
     red: EmitterSection
     green: EmitterSection
     blue: EmitterSection
+    power: Annotated[float, between(0, 100, "times")] = 1.0
     diameter_m: Annotated[float, between(0.001, 1, "m")]
     half_angle_deg: Annotated[float, between(5, 85, "degrees")]
 

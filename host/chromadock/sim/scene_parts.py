@@ -89,7 +89,8 @@ def dock_of(section: models.DockSection, source: str) -> tuple[DockGeometry, NDA
 def lamp_of(section: models.LampSection) -> LampSpec:
     """What shines in each marker."""
     red, green, blue = (
-        Emitter(**emitter.model_dump()) for emitter in (section.red, section.green, section.blue)
+        Emitter(led.peak_nm, led.fwhm_nm, section.power * led.intensity_cd)
+        for led in (section.red, section.green, section.blue)
     )
     return LampSpec(red, green, blue, section.diameter_m, section.half_angle_deg)
 

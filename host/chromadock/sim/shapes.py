@@ -39,7 +39,7 @@ class Hits:
     range_m
         (M,) distance along the ray.
     normal
-        (M, 3) outward unit normals.
+        (3, M) outward unit normals.
     along
         (M,) place from the first of the shape's ``spots`` to the last, 0..1; None: all at one.
     """
@@ -68,7 +68,7 @@ class Shape(Protocol):
     def coverage(self, rays: Singles, soft_rad: float) -> Singles:
         """(N,) share of each pixel that is filled, 0..1, its edge ``soft_rad`` wide.
 
-        ``rays`` is (N, 3), unit vectors from the origin.
+        ``rays`` is (3, N), unit vectors from the origin.
         """
 
     def hits(self, rays: Singles, soft_rad: float) -> Hits:
@@ -107,14 +107,14 @@ class Sphere:
         covered = _covered(distance, self.radius_m, soft_rad, range_m)
         met = np.flatnonzero(covered)
         depth = _half_chord(self.radius_m, distance[met])
-        normal = _unit(offset[met] - depth[:, None] * rays[met])
+        normal = _unit(offset[:, met] - depth * rays[:, met])
         return Hits(met, covered[met], range_m[met] - depth, normal)
 
     def _nearest(self, rays: Singles) -> tuple[Singles, Singles, Singles]:
-        """(N, 3) from the centre to each ray, (N,) distance along the ray, (N,) from it."""
+        """(3, N) from the centre to each ray, (N,) distance along the ray, (N,) from it."""
         centre = self.centre.astype(np.float32)
-        range_m = rays @ centre
-        offset = range_m[:, None] * rays - centre
+        range_m = centre @ rays
+        offset = range_m * rays - centre[:, None]
         return offset, range_m, _length(offset)
 
 
@@ -152,11 +152,11 @@ class Tube:
         offset, range_m, distance, along = self._nearest(rays)
         covered = _covered(distance, self.radius_m, soft_rad, range_m)
         met = np.flatnonzero(covered)
-        axis, rays = self._axis, rays[met]
-        inwards = rays - (rays @ axis)[:, None] * axis
+        axis, rays = self._axis, rays[:, met]
+        inwards = rays - (axis @ rays) * axis[:, None]
         slant = np.maximum(_length(inwards), np.float32(_EDGE_ON))
         depth = np.asarray(_half_chord(self.radius_m, distance[met]) / slant, np.float32)
-        normal = _unit(offset[met] - depth[:, None] * inwards)
+        normal = _unit(offset[:, met] - depth * inwards)
         # Along the axis a ray would meet the round end long before.
         nearer = np.minimum(depth, np.float32(10 * self.radius_m))
         return Hits(met, covered[met], range_m[met] - nearer, normal, along[met])
@@ -167,17 +167,17 @@ class Tube:
         return np.asarray(axis / math.sqrt(axis @ axis), np.float32)
 
     def _nearest(self, rays: Singles) -> tuple[Singles, Singles, Singles, Singles]:
-        """(N, 3) from the axis to each ray, (N,) distance along the ray, (N,) from it, place.
+        """(3, N) from the axis to each ray, (N,) distance along the ray, (N,) from it, place.
 
         The two lines' nearest points, that on the axis kept between its ends.
         """
         start, axis = self.start.astype(np.float32), self._axis
         length = np.float32(math.dist(self.start, self.end))
-        cosine, to_start, before = rays @ axis, rays @ start, start @ axis
+        cosine, to_start, before = axis @ rays, start @ rays, start @ axis
         range_m = (to_start - before * cosine) / np.maximum(1 - cosine**2, np.float32(1e-6))
         along = np.clip(range_m * cosine - before, 0, length)
         range_m = to_start + along * cosine
-        offset = range_m[:, None] * rays - start - along[:, None] * axis
+        offset = range_m * rays - start[:, None] - along * axis[:, None]
         return offset, range_m, _length(offset), along / length
 
 
@@ -210,7 +210,7 @@ class Panel:
 
         Each edge and the camera span a plane; the panel is seen between all four.
         """
-        covered = np.ones(len(rays), np.float32)
+        covered = np.ones(rays.shape[1], np.float32)
         if self._facing is None:
             return np.zeros_like(covered)
         for out, edge in (
@@ -218,7 +218,7 @@ class Panel:
             (self.half_down, self.half_across),
         ):
             # Both edges count, as in ``_covered``.
-            between = np.full(len(rays), -1, np.float32)
+            between = np.full_like(covered, -1)
             for side in (out, -out):
                 plane = _edge_plane(self.centre + side, edge, self.centre)
                 between += _beyond(plane, rays, soft_rad)
@@ -230,12 +230,12 @@ class Panel:
         covered = self.coverage(rays, soft_rad)
         met = np.flatnonzero(covered)
         normal = _TOWARDS if self._facing is None else self._facing
-        towards = np.minimum(rays[met] @ normal.astype(np.float32), np.float32(-_EDGE_ON))
+        towards = np.minimum(normal.astype(np.float32) @ rays[:, met], np.float32(-_EDGE_ON))
         centre, radius = self.bound
         # Soft edges reach a little beyond the panel, where a slanting plane runs off.
         farthest = math.sqrt(centre @ centre) + radius
         range_m: Singles = np.clip(np.float32(self.centre @ normal) / towards, NEAR_M, farthest)
-        normals = np.broadcast_to(normal.astype(np.float32), (len(met), 3))
+        normals = np.broadcast_to(normal.astype(np.float32)[:, None], (3, len(met)))
         return Hits(met, covered[met], range_m, normals)
 
     @property
@@ -279,8 +279,8 @@ class Box:
         faces = [(i, side) for i in range(3) for side in (-1, 1)]
         seen = {face: face[1] * camera[face[0]] > self.half[face[0]] for face in faces}
         if not any(seen.values()):
-            return np.zeros(len(rays), np.float32)
-        covered = np.ones(len(rays), np.float32)
+            return np.zeros(rays.shape[1], np.float32)
+        covered = np.ones(rays.shape[1], np.float32)
         for one, other in combinations(faces, 2):
             if one[0] != other[0] and seen[one] != seen[other]:
                 corner = self.centre.copy()
@@ -296,14 +296,14 @@ class Box:
         covered = self.coverage(rays, soft_rad)
         met = np.flatnonzero(covered)
         axes = self.axes.astype(np.float32)
-        camera = (-self.centre @ self.axes).astype(np.float32)
-        speed = rays[met] @ axes
+        camera = (-self.centre @ self.axes).astype(np.float32)[:, None]
+        speed = axes.T @ rays[:, met]
         speed = np.where(np.abs(speed) < 1e-6, np.float32(1e-6), speed)
-        enters = (-np.sign(speed) * self.half.astype(np.float32) - camera) / speed
-        face = enters.argmax(axis=1)
-        normal = -np.sign(np.take_along_axis(speed, face[:, None], axis=1)) * axes.T[face]
+        enters = (-np.sign(speed) * self.half.astype(np.float32)[:, None] - camera) / speed
+        face = enters.argmax(axis=0)
+        normal = -np.sign(np.take_along_axis(speed, face[None], axis=0)) * axes[:, face]
         centre, radius = self.bound
-        range_m = np.clip(enters.max(axis=1), NEAR_M, math.sqrt(centre @ centre) + radius)
+        range_m = np.clip(enters.max(axis=0), NEAR_M, math.sqrt(centre @ centre) + radius)
         return Hits(met, covered[met], range_m, normal)
 
 
@@ -321,7 +321,7 @@ def _edge_plane(corner: Floats, edge: Floats, inside: Floats) -> Floats:
 
 def _beyond(plane: Floats, rays: Singles, soft_rad: float) -> Singles:
     """(N,) share of each pixel on the plane's inner side, 0..1."""
-    beyond = rays @ (plane / soft_rad).astype(np.float32)
+    beyond = (plane / soft_rad).astype(np.float32) @ rays
     beyond += np.float32(0.5)
     return np.asarray(np.clip(beyond, 0, 1, out=beyond))
 
@@ -344,8 +344,9 @@ def _half_chord(radius_m: float, distance: Singles) -> Singles:
 
 
 def _length(vectors: Singles) -> Singles:
-    return np.asarray(np.sqrt(np.einsum("ij,ij->i", vectors, vectors)))
+    x, y, z = vectors
+    return np.asarray(np.sqrt(x * x + y * y + z * z))
 
 
 def _unit(vectors: Singles) -> Singles:
-    return np.asarray(vectors / np.maximum(_length(vectors), np.float32(1e-9))[:, None])
+    return np.asarray(vectors / np.maximum(_length(vectors), np.float32(1e-9)))

@@ -42,10 +42,9 @@ def test_an_evaluation_leaves_tables_gallery_and_report(tmp_path: Path) -> None:
     assert not [name for name in names if "partial" in name]
 
 
-@pytest.mark.parametrize("signal_", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_is_a_line_and_the_same_command_goes_on(tmp_path: Path, signal_: int) -> None:
+def test_ctrl_c_is_a_line_and_what_is_done_is_kept(tmp_path: Path) -> None:
     leave_tuned(tmp_path / "out")
-    long = CONTENT.replace("frames = 34", "frames = 104").replace("rate_hz = 4.0", "rate_hz = 1.0")
+    long = CONTENT.replace("frames = 26", "frames = 104").replace("rate_hz = 4.0", "rate_hz = 1.0")
     path = write(tmp_path, long)
     parts = tmp_path / "out" / "parts"
     process = subprocess.Popen(
@@ -58,14 +57,13 @@ def test_ctrl_c_is_a_line_and_the_same_command_goes_on(tmp_path: Path, signal_: 
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     wait_for(lambda: parts.is_dir() and any(parts.glob("[!.]*")))
-    os.killpg(process.pid, signal_)  # as a terminal does: the workers get it too
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it too
     _, told = process.communicate(timeout=60)
-    assert process.returncode == 128 + signal_
-    if signal_ == signal.SIGINT:
-        assert told == (
-            "chromadock: interrupted: what is done is kept in out; "
-            "the same command goes on from there\n"
-        )
+    assert process.returncode == 130
+    assert told == (
+        "chromadock: interrupted: what is done is kept in out; "
+        "the same command goes on from there\n"
+    )
     assert not (tmp_path / "out" / "frames.parquet").exists()
     kept = set(parts.iterdir())
     assert kept

@@ -66,8 +66,7 @@ def test_chunks_are_the_unbroken_run_frame_by_frame(tmp_path: Path, expected: An
         (6, 12),
         (12, 18),
         (18, 24),
-        (24, 30),
-        (30, 34),
+        (24, 26),
     ]
     parts = [(rows.part(*measured_chunk(c, steps, TUNED)), run.varied) for c in chunks[1:3]]
     assert same(rows.merged(parts), expected.filter(pl.col("run") == run.name)[12:36])
@@ -113,7 +112,7 @@ def test_a_killed_worker_loses_nothing(
     assert victim not in client.run(os.getpid).values()
     assert same(table, expected)
     assert same(pl.read_parquet(out / "frames.parquet"), expected)
-    assert pl.read_csv(out / "frames.csv").height == expected.height == 2 * 34 * 2
+    assert pl.read_csv(out / "frames.csv").height == expected.height == 2 * 26 * 2
 
 
 def test_an_evaluation_goes_on_where_it_was_and_makes_damaged_and_stale_parts_anew(
@@ -121,26 +120,26 @@ def test_an_evaluation_goes_on_where_it_was_and_makes_damaged_and_stale_parts_an
 ) -> None:
     evaluate(runs(tmp_path), out, client, lambda done, total: None)
     parts = sorted((out / "parts").iterdir())
-    assert len(parts) == 12
+    assert len(parts) == 10
     parts[0].unlink()
     parts[1].write_bytes(parts[1].read_bytes()[:-100])
     told: list[tuple[int, int]] = []
     table = evaluate(runs(tmp_path), out, client, lambda *counts: told.append(counts))
-    assert told[0][1] == told[-1][0] == 68
-    assert 68 - 12 <= told[0][0] < 68
+    assert told[0][1] == told[-1][0] == 52
+    assert 52 - 12 <= told[0][0] < 52
     assert len(told) == 3
     assert same(table, expected)
 
     told.clear()
     evaluate(runs(tmp_path), out, NOBODY, lambda *counts: told.append(counts))
-    assert told == [(68, 68)]  # all there: no worker is asked
+    assert told == [(52, 52)]  # all there: no worker is asked
 
     other_water = CONTENT.replace("transmittance = 0.3", "transmittance = 0.4")
     told.clear()
     stale = evaluate(runs(tmp_path, other_water), out, client, lambda *counts: told.append(counts))
-    assert told[0] == (0, 68)
+    assert told[0] == (0, 52)
     assert not same(stale, expected)
-    assert len(list((out / "parts").iterdir())) == 12
+    assert len(list((out / "parts").iterdir())) == 10
 
 
 class _Nobody:
@@ -155,7 +154,7 @@ def test_an_interrupted_evaluation_keeps_what_is_done(
     tmp_path: Path, out: Path, client: Client, expected: pl.DataFrame
 ) -> None:
     def interrupt(done: int, total: int) -> None:
-        if done > 20:
+        if done > 15:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -163,7 +162,7 @@ def test_an_interrupted_evaluation_keeps_what_is_done(
     assert not (out / "frames.parquet").exists()
     told: list[tuple[int, int]] = []
     table = evaluate(runs(tmp_path), out, client, lambda *counts: told.append(counts))
-    assert told[0][0] > 20
+    assert told[0][0] > 15
     assert same(table, expected)
 
 

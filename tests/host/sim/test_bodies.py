@@ -138,7 +138,7 @@ def test_a_box_is_met_where_a_ray_crosses_all_three_slabs() -> None:
     coverage = np.concatenate([hits.coverage, np.zeros(len(missed))])
     order = np.concatenate([hits.index, missed])
     for k, (pixel, ray, covered) in enumerate(
-        zip(pixels[order], rays[order].astype(float), coverage, strict=True)
+        zip(pixels[order], rays.T[order].astype(float), coverage, strict=True)
     ):
         bounds = [sorted(((-h - o) / d, (h - o) / d)) for h, o, d in
                   zip(half, R.T @ -centre, R.T @ ray, strict=True)]  # fmt: skip
@@ -149,7 +149,9 @@ def test_a_box_is_met_where_a_ray_crosses_all_three_slabs() -> None:
             assert hits.range_m[k] == pytest.approx(enters, rel=1e-4)
             local = R.T @ (enters * ray - centre)
             face = np.argmax(np.abs(local) / half)
-            np.testing.assert_allclose(hits.normal[k], np.sign(local[face]) * R[:, face], atol=1e-5)
+            np.testing.assert_allclose(
+                hits.normal[:, k], np.sign(local[face]) * R[:, face], atol=1e-5
+            )
     assert (hits.coverage == 1).sum() > 500
 
 
@@ -161,8 +163,8 @@ def test_balls_and_tubes_are_met_on_their_surface() -> None:
         _, rays = finder.find(shape, range(HEIGHT), finder.pixel_rad)
         hits = shape.hits(rays, finder.pixel_rad)
         whole = hits.coverage == 1
-        points = rays[hits.index[whole]] * hits.range_m[whole][:, None]
-        inwards = points - 0.05 * hits.normal[whole]
+        points = (rays[:, hits.index[whole]] * hits.range_m[whole]).T
+        inwards = points - 0.05 * hits.normal[:, whole].T
         if shape is ball:
             distance = [np.linalg.norm(p - ball.centre, axis=1) for p in (points, inwards)]
             wanted = ball.radius_m

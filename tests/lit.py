@@ -1,7 +1,6 @@
-"""Light from LEDs through water onto a sensor: enough physics for a demonstration.
+"""Light from LEDs through water onto a photograph: a few lines that owe the simulator nothing.
 
 Direct light falls with ``exp(-c r)``; what is scattered forwards lands in a halo.
-Spectra, sun and sensor colours are left to a real simulator.
 """
 
 from __future__ import annotations

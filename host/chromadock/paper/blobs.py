@@ -55,9 +55,11 @@ def _centred(mask: NDArray[np.uint8], spot: Spot) -> Spot | None:
     ys, xs = np.nonzero(mask[y0:y1, x0:x1])
     xs, ys = xs + x0, ys + y0
     inside = (xs - spot.x) ** 2 + (ys - spot.y) ** 2 <= spot.radius**2
-    if np.count_nonzero(inside) < MIN_AREA:
+    area = np.count_nonzero(inside)
+    if area < MIN_AREA:
         return None
-    return Spot(float(xs[inside].mean()), float(ys[inside].mean()), spot.radius, spot.response)
+    x, y = (int(place[inside].sum()) / area for place in (xs, ys))  # much faster than mean()
+    return Spot(x, y, spot.radius, spot.response)
 
 
 def _same_place(a: Spot, b: Spot) -> bool:

@@ -74,6 +74,7 @@ class Bodies:
         self._shutter = shutter
         self._view = view
         self._daylit = Daylit(ambient, response)
+        self._placed: tuple[float, list[tuple[Body, Shape]]] | None = None
         self._finder = PixelFinder(camera)
         # An even ramp with the variance of the lens's Gaussian blur.
         self._soft_rad = math.sqrt(12) * LENS_SIGMA_PX * self._finder.pixel_rad
@@ -81,10 +82,10 @@ class Bodies:
     def draw(self, light: Singles, time_s: float) -> None:
         """Draw all into a (H, W, 3) float32 signal image, in place; farthest first."""
         bands = self._shutter.bands(BLOCK_PX)
-        near: Sequence[Body] = self._bodies
+        near = self._bodies
         if len(bands) > 1:  # what is out of view is looked for once, not in every band
-            shapes = self._in_camera(self._bodies, time_s)
-            near = [body for body, shape in shapes if self._finder.shows(shape, _SWAY_RAD)]
+            shapes = self._in_camera(time_s)
+            near = tuple(body for body, shape in shapes if self._finder.shows(shape, _SWAY_RAD))
         if not near:
             return
         flat = light.reshape(-1, 3)
@@ -100,21 +101,25 @@ class Bodies:
         ranges = np.linalg.norm(points_camera, axis=1)
         rays = points_camera / ranges[:, None]
         penumbra_rad = diameter_m / float(ranges.min())
-        for _, shape in self._in_camera(self._bodies, time_s):
+        for _, shape in self._in_camera(time_s):
             centre, radius = shape.bound
-            off = np.linalg.norm(centre - rays * (rays @ centre)[:, None], axis=1)
-            if (off < radius + diameter_m).any():
+            along = rays @ centre
+            if (centre @ centre - along**2 < (radius + diameter_m) ** 2).any():
                 hits = shape.hits(rays.T.astype(np.float32), penumbra_rad)
                 before = hits.range_m < ranges[hits.index] - diameter_m / 2
                 left[hits.index] *= 1 - np.where(before, hits.coverage, 0)
         return left
 
-    def _in_camera(self, bodies: Sequence[Body], time_s: float) -> list[tuple[Body, Shape]]:
+    def _in_camera(self, time_s: float) -> list[tuple[Body, Shape]]:
         """The bodies with their shapes in the camera's frame."""
-        T_camera_world = self._view.T_world_camera(time_s).inverse()
-        frames = {"world": T_camera_world}
-        frames["dock"] = T_camera_world @ self._view.T_world_dock(time_s)
-        return [(body, body.shape.moved(frames[body.fixed_to])) for body in bodies]
+        # Asked for twice a frame: by what is hidden and by what is drawn.
+        if self._placed is None or self._placed[0] != time_s:
+            T_camera_world = self._view.T_world_camera(time_s).inverse()
+            frames = {"world": T_camera_world}
+            frames["dock"] = T_camera_world @ self._view.T_world_dock(time_s)
+            shapes = [(body, body.shape.moved(frames[body.fixed_to])) for body in self._bodies]
+            self._placed = (time_s, shapes)
+        return self._placed[1]
 
     def _draw_rows(
         self, bodies: Sequence[Body], light: Singles, around: Singles, rows: range, time_s: float
@@ -122,7 +127,9 @@ class Bodies:
         """Draw what (H * W, 3) pixels of some rows show at a moment."""
         T_world_camera = self._view.T_world_camera(time_s)
         found = []
-        for body, shape in self._in_camera(bodies, time_s):
+        for body, shape in self._in_camera(time_s):
+            if body not in bodies:
+                continue
             pixels, rays = self._finder.find(shape, rows, self._soft_rad)
             hits = shape.hits(rays, self._soft_rad)
             if len(hits.index):

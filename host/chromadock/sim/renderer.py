@@ -126,22 +126,31 @@ class Renderer:
         placed = None if self._markers is None else self._markers.placed(time_s)
         return self._light(time_s, led_share, placed)[0]
 
+    def picture(
+        self, time_s: float, led_share: ArrayLike, settings: CameraSettings
+    ) -> NDArray[np.uint8]:
+        """(H, W, 3) uint8 BGR; the same arguments give the same bytes, in any process.
+
+        Noise depends on the scene's seed, the camera and the time alone.
+        """
+        return self._taken(self.light(time_s, led_share), time_s, settings)
+
     def frame(
         self, time_s: float, led_share: ArrayLike, settings: CameraSettings, index: int
     ) -> Frame:
-        """The finished frame; the same arguments give the same bytes, in any process.
-
-        Noise depends on the scene's seed, the camera and the time, not on ``index``, which
-        only numbers the frame.
-        """
+        """The same with its truth; ``index`` only numbers the frame."""
         placed = None if self._markers is None else self._markers.placed(time_s)
         light, water = self._light(time_s, led_share, placed)
-        moment = round(time_s * 1e6) & 0xFFFFFFFFFFFFFFFF
-        rng = np.random.default_rng([self._scene.seed, self._stream, moment])
         return Frame(
-            self._sensor.picture(light, settings, rng),
+            self._taken(light, time_s, settings),
             self._truth(time_s, np.asarray(led_share, np.float64), settings, index, placed, water),
         )
+
+    def _taken(self, light: Image, time_s: float, settings: CameraSettings) -> NDArray[np.uint8]:
+        """The picture of light on the sensor."""
+        moment = round(time_s * 1e6) & 0xFFFFFFFFFFFFFFFF
+        rng = np.random.default_rng([self._scene.seed, self._stream, moment])
+        return self._sensor.picture(light, settings, rng)
 
     def _light(
         self, time_s: float, led_share: ArrayLike, placed: Placed | None

@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 
 from chromadock.dock import DockGeometry
 from chromadock.sim.body import Body
+from chromadock.sim.flat_shapes import Box, Panel
+from chromadock.sim.round_shapes import Sphere, Tube
 from chromadock.sim.scene_models import BodySection, DockSection
-from chromadock.sim.shapes import Box, Panel, Shape, Sphere, Tube
+from chromadock.sim.shapes import Shape
 from chromadock.sim.spectrum import reflectance
 
 Floats = NDArray[np.float64]

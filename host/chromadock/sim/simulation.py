@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from chromadock.colour.hsv import degrees, rgb_from_hsv
 from chromadock.detector import MAPPINGS
@@ -20,6 +22,9 @@ from chromadock.sim.renderer import Frame, Renderer
 from chromadock.sim.scene import Scene
 
 RGB = tuple[int, int, int]
+
+METER_PERIOD_S = 0.1
+"""Cameras look at the light this often, not at every frame of a fast one."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +107,7 @@ class Simulation:
         led_share = (0.0, 0.0, 0.0)
         for index, time_s in enumerate(times):
             dock_settings = dock_camera.settings(time_s, led_share)
-            seen = self._dock.frame(time_s, led_share, dock_settings, index).image_bgr
+            seen = self._dock.picture(time_s, led_share, dock_settings)
             height, width = seen.shape[:2]
             dock.frame(to_rgb565(seen), width, height, "rgb565", round(1000 * time_s))
             led_share = _led_share(dock.duties, led_full)
@@ -139,12 +144,16 @@ class _Adapting:
         self._adapts = "auto" in (camera.control.exposure, camera.control.white_balance)
         self._renderer = renderer
         self._settings: CameraSettings | None = None
+        self._metered: NDArray[np.float64] = np.zeros(3)
+        self._metered_s = -math.inf
 
     def settings(self, time_s: float, led_share: tuple[float, float, float]) -> CameraSettings:
         """At a moment; nothing is metered once all is locked."""
-        if self._adapts or self._settings is None:
-            metered = self._renderer.meter(time_s, led_share)
-            self._settings = self._control.update(metered, time_s)
+        if self._settings is None or self._adapts:
+            if time_s - self._metered_s >= METER_PERIOD_S:
+                self._metered = self._renderer.meter(time_s, led_share)
+                self._metered_s = time_s
+            self._settings = self._control.update(self._metered, time_s)
         return self._settings
 
 

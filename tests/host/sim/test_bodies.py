@@ -13,10 +13,12 @@ from chromadock.sim.ambient import Ambient
 from chromadock.sim.bodies import Bodies
 from chromadock.sim.body import Body
 from chromadock.sim.camera_spec import load_camera
+from chromadock.sim.flat_shapes import Box, Panel
 from chromadock.sim.pixel_finder import PixelFinder
 from chromadock.sim.rays import solid_angles
 from chromadock.sim.response import Response
-from chromadock.sim.shapes import Box, Panel, Shape, Sphere, Tube
+from chromadock.sim.round_shapes import Sphere, Tube
+from chromadock.sim.shapes import Shape
 from chromadock.sim.shutter import Shutter
 from chromadock.sim.spectrum import WAVELENGTHS_NM, reflectance
 from chromadock.sim.transform import Transform, turned

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from chromadock.errors import ChromadockError
+from chromadock.sim.flat_shapes import Box, Panel
+from chromadock.sim.round_shapes import Sphere, Tube
 from chromadock.sim.scene import SHIPPED, load_scene
-from chromadock.sim.shapes import Box, Panel, Sphere, Tube
 from chromadock.sim.water import Water
 
 POOL = (resources.files("chromadock.sim") / "scenes" / "pool.toml").read_text("utf-8")

@@ -9,6 +9,9 @@ from chromadock.evaluate.summary import Estimate
 NOTHING = "–"
 """For what could not be measured."""
 
+LEAST = 0.01
+"""Ratios below it are told as that: a filter that passes next to nothing is blind."""
+
 
 def percent(estimate: Estimate | None) -> str:
     """A share: ``0.042 % (0.039–0.045)``."""
@@ -29,11 +32,15 @@ def ratio(estimate: Estimate | None) -> str:
     """A ratio: ``×120 (110–140)``."""
     if estimate is None:
         return NOTHING
+    if estimate.value < LEAST:
+        return times(estimate.value)
     return f"{times(estimate.value)} ({number(estimate.low)}–{number(estimate.high)})"
 
 
 def times(value: float) -> str:
-    """A ratio without interval: ×0.42, ×3.1, ×120."""
+    """A ratio without interval: ×0.42, ×3.1, ×120, or ×<0.01."""
+    if value < LEAST:
+        return f"×<{LEAST:g}"
     return f"×{number(value)}"
 
 

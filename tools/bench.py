@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import budgets
-from bench_host import SkippedError, host_ratios, resident_mib
+from bench_host import SkippedError, host_ratios, resident_mib, simulator_ratios
 from rich.console import Console
 from rich.table import Table
 from xtensa import Measurement, measure
@@ -56,6 +56,9 @@ def main() -> int:
         host["resident_mib"] = resident_mib()
         text = judged(host["resident_mib"], budgets.RESIDENT_MIB, f"{host['resident_mib']:.0f}")
         console.print(f"chromadock detect on VGA video: {text} of {budgets.RESIDENT_MIB} MiB")
+        host["simulator_ratio_to_gaussian_blur"] = simulator_ratios()
+        for scene, ratio in host["simulator_ratio_to_gaussian_blur"].items():
+            console.print(f"a simulated VGA frame, {scene}: {ratio:.0f} Gaussian blurs")
     except SkippedError as error:
         skipped.append(str(error))
     for line in skipped:

@@ -60,6 +60,39 @@ def host_ratios() -> tuple[dict[str, float], list[str]]:
     return ratios, skipped
 
 
+def simulator_ratios() -> dict[str, float]:
+    """Time one rendered VGA frame of each shipped scene against one Gaussian blur of it.
+
+    Raises:
+        SkippedError: the simulator cannot be used.
+    """
+    import cv2
+
+    try:
+        from chromadock.sim.scene import SHIPPED, load_scene
+        from chromadock.sim.simulation import Simulation
+    except ImportError as error:
+        raise SkippedError(f"simulator: {error}") from error
+
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        ratios = {}
+        for scene in SHIPPED:
+            simulation = Simulation(load_scene(scene))
+            frames = []
+            for step in simulation.steps(turn / 30 for turn in range(WARM_UP + ROUNDS)):
+                start = time.perf_counter()
+                picture = simulation.frame(step).image_bgr
+                between = time.perf_counter()
+                cv2.GaussianBlur(picture, (5, 5), 0)
+                frames.append((between - start) / (time.perf_counter() - between))
+            ratios[scene] = round(statistics.median(frames[WARM_UP:]), 1)
+    finally:
+        cv2.setNumThreads(threads)
+    return ratios
+
+
 def resident_mib(frames: int = 60) -> float:
     """Most memory that ``chromadock detect`` holds on a VGA video, MiB."""
     import cv2

@@ -242,7 +242,7 @@ def test_a_corrupt_picture_is_reported_skipped_and_counted(folder):
         (["in", "--camera", "keys.yaml"], "keys.yaml: camera_matrix is missing: give"),
         (["in", "--camera", "singular.yaml"], "singular.yaml: camera_matrix is singular: it must"),
         (["in", "--camera", "small.yaml"], "small.yaml: calibrated for 320x240 pixels, but the"),
-        (["in", "--dock", "none.toml"], "none.toml: cannot read"),
+        (["in", "--dock", "none.toml"], "none.toml: cannot be read"),
         (["in", "--dock", "two.toml"], "two.toml: 2 markers: a pose needs at least 3"),
         (["in", "--dock", "twice.toml"], "twice.toml: the name a is used 2 times: give"),
         (["in", "--dock", "nan.toml"], "nan.toml: marker c has a position that is not finite"),

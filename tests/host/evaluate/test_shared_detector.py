@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import statistics
-import time
 
 import cv2
 import numpy as np
@@ -12,7 +10,6 @@ import pytest
 from composites import CAMERA, DOCK, compose
 
 from chromadock import Detector
-from chromadock.paper.blobs import find_spots
 from chromadock.paper.constellation import (
     ANGLE_TOLERANCE_DEG,
     RATIO_TOLERANCE,
@@ -65,24 +62,6 @@ def test_peaks_are_those_of_the_whole_mask_whatever_is_left_out() -> None:
         assert peaks == plain_peaks(mask)
         found += len(peaks)
     assert found > 1000
-
-
-def test_an_almost_empty_mask_costs_a_fraction_of_a_full_one() -> None:
-    rng = np.random.default_rng(7)
-    specks = np.zeros((480, 640), np.uint8)
-    for x, y in itertools.product((30, 320, 610), (30, 450)):
-        specks[y : y + 3, x : x + 3] = 255
-    noise = np.where(rng.random((480, 640)) < 0.05, 255, 0).astype(np.uint8)
-    assert median_ms(lambda: find_spots(specks)) < 0.6 * median_ms(lambda: find_spots(noise))
-
-
-def median_ms(work) -> float:
-    times = []
-    for _ in range(15):
-        start = time.perf_counter()
-        work()
-        times.append(1000 * (time.perf_counter() - start))
-    return statistics.median(times)
 
 
 def plain_right_triangles(points: np.ndarray, ratio: float) -> np.ndarray:

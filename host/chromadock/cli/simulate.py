@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,6 +13,7 @@ from rich.progress import track
 from chromadock.detector import MAPPINGS
 from chromadock.errors import ChromadockError
 from chromadock.method import DEFAULT_MAPPING_NAME
+from chromadock.processors import processors
 from chromadock.text import plural
 
 if sys.version_info >= (3, 11):
@@ -124,7 +124,7 @@ def _count(frames: int | None, seconds: float | None, fps: float) -> int:
 
 def _processes(jobs: int | None) -> int:
     if jobs is None:
-        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+        return processors()
     if not 1 <= jobs <= _MOST_JOBS:
         raise ChromadockError(f"--jobs is {jobs}: give 1 to {_MOST_JOBS} processes")
     return jobs

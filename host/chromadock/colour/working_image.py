@@ -36,13 +36,9 @@ def working_image(
     (60, 80, 3) uint8, same channel order, 0..255, rounded once, halves up.
     """
     height, width = pixels.shape[:2]
-    y0, y1 = _boxes(height, method.WORKING_HEIGHT)
-    x0, x1 = _boxes(width, method.WORKING_WIDTH)
-    # Sums may wrap in 32 bits; their differences, the boxes, do not.
-    integral = cv2.integral(pixels).view(np.uint32)
-    top, bottom = integral[y0], integral[y1]
-    sums = (bottom[:, x1] - bottom[:, x0] - top[:, x1] + top[:, x0]).astype(np.int64)
-    count = ((y1 - y0)[:, None] * (x1 - x0)[None, :])[..., None]
+    whole = height % method.WORKING_HEIGHT == 0 and width % method.WORKING_WIDTH == 0
+    small = height <= method.MAX_FRAME_HEIGHT and width <= method.MAX_FRAME_WIDTH
+    sums, count = _equal_boxes(pixels) if whole and small else _unequal_boxes(pixels)
     full = np.asarray(scale, dtype=np.int64) * count
     return ((510 * sums + full) // (2 * full)).astype(np.uint8)
 
@@ -50,6 +46,34 @@ def working_image(
 def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """3 x 3 binomial blur of the working image, edge pixels repeated outwards."""
     return np.asarray(cv2.GaussianBlur(image, (3, 3), 0, borderType=cv2.BORDER_REPLICATE), np.uint8)
+
+
+def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Sums (60, 80, 3) and counts of a frame whose cells all have the same whole size.
+
+    Exact, and four times as fast as the other: the 64 rows at most of a cell of the largest
+    frame add up in 16 bits, its 64 x 64 pixels in float32, which holds integers up to 2^24.
+    """
+    rows = pixels.shape[0] // method.WORKING_HEIGHT
+    columns = pixels.shape[1] // method.WORKING_WIDTH
+    stacked = pixels.reshape(method.WORKING_HEIGHT, rows, -1)
+    upright = np.add.reduce(stacked, axis=1, dtype=np.uint16)
+    cells = upright.reshape(-1, 3 * columns).astype(np.float32)
+    by_channel = np.tile(np.eye(3, dtype=np.float32), (columns, 1))
+    sums = (cells @ by_channel).astype(np.int64)
+    shape = (method.WORKING_HEIGHT, method.WORKING_WIDTH, 3)
+    return sums.reshape(shape), np.array(rows * columns, np.int64)
+
+
+def _unequal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Sums (60, 80, 3) and counts (60, 80, 1) for any size."""
+    y0, y1 = _boxes(pixels.shape[0], method.WORKING_HEIGHT)
+    x0, x1 = _boxes(pixels.shape[1], method.WORKING_WIDTH)
+    # Sums may wrap in 32 bits; their differences, the boxes, do not.
+    integral = cv2.integral(pixels).view(np.uint32)
+    top, bottom = integral[y0], integral[y1]
+    sums = (bottom[:, x1] - bottom[:, x0] - top[:, x1] + top[:, x0]).astype(np.int64)
+    return sums, ((y1 - y0)[:, None] * (x1 - x0)[None, :])[..., None]
 
 
 def _boxes(size: int, cells: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

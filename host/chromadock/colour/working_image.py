@@ -40,7 +40,7 @@ def working_image(
     small = height <= method.MAX_FRAME_HEIGHT and width <= method.MAX_FRAME_WIDTH
     sums, count = _equal_boxes(pixels) if whole and small else _unequal_boxes(pixels)
     full = np.asarray(scale, dtype=np.int64) * count
-    return ((510 * sums + full) // (2 * full)).astype(np.uint8)
+    return np.asarray((510 * sums + full) // (2 * full), np.uint8)
 
 
 def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:

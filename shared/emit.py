@@ -11,7 +11,12 @@ Method = dict[str, Any]
 Tables = dict[str, list[int]]
 
 # Tables whose entries need more than 16 bits, and the signed one.
-C_TYPES = {"SINE": "int16_t", "GAMMA": "uint16_t", "ARCTANGENT": "uint8_t"}
+C_TYPES = {
+    "SINE": "int16_t",
+    "GAMMA": "uint16_t",
+    "MARKER_HUE": "uint16_t",
+    "ARCTANGENT": "uint8_t",
+}
 
 
 def c_type(name: str) -> str:
@@ -28,7 +33,7 @@ def rows(values: Iterable[int], indent: str, width: int) -> str:
 def constants(m: Method) -> dict[str, int]:
     """The integer constants under one name for C and Python."""
     work, roll, led = m["working_image"], m["rolling"], m["led"]
-    mappings = list(m["marker"]["mappings"])
+    mappings, nodes = m["marker"]["mappings"], m["marker"]["nodes"]
     return {
         "HUE_RANGE": m["hue"]["range"],
         "HUE_SHIFT": m["hue"]["shift"],
@@ -50,6 +55,8 @@ def constants(m: Method) -> dict[str, int]:
         "FALLBACK_HUE": m["marker"]["fallback_hue"],
         **{f"MAPPING_{k.upper()}": i for i, k in enumerate(mappings)},
         "MAPPING_COUNT": len(mappings),
+        "MARKER_NODES": nodes,
+        "MARKER_NODE_STEP": m["hue"]["range"] // nodes,
         "WINDOW_MS": roll["window_ms"],
         "MIN_WINDOW_MS": roll["min_window_ms"],
         "MAX_WINDOW_MS": roll["max_window_ms"],
@@ -73,9 +80,6 @@ def c_header(banner: str, m: Method, digest: str, tables: Tables) -> str:
         "",
         *(f"#define METHOD_{name} {value}" for name, value in constants(m).items()),
         "",
-        "/* Hue turned by each mapping, in hue steps. */",
-        "extern const uint16_t METHOD_MAPPING_TURN[METHOD_MAPPING_COUNT];",
-        "",
         *(f"extern const {c_type(n)} METHOD_{n}[{len(v)}];" for n, v in tables.items()),
         "",
         "#endif",
@@ -87,8 +91,6 @@ def c_header(banner: str, m: Method, digest: str, tables: Tables) -> str:
 def c_tables(banner: str, m: Method, tables: Tables) -> str:
     """``method.c``: the tables themselves."""
     parts = [f'/* {banner} */\n#include "method.h"\n']
-    turns = braces(m["marker"]["mappings"].values())
-    parts.append(f"const uint16_t METHOD_MAPPING_TURN[METHOD_MAPPING_COUNT] = {turns};\n")
     for name, values in tables.items():
         body = rows(values, "    ", 80)
         parts.append(f"const {c_type(name)} METHOD_{name}[{len(values)}] = {{\n{body}}};\n")
@@ -107,7 +109,7 @@ def python(banner: str, m: Method, digest: str, tables: Tables) -> str:
         f'DIGEST = "{digest}"',
         "",
         *(f"{name} = {value}" for name, value in constants(m).items()),
-        f"MAPPING_TURN = {m['marker']['mappings']}",
+        f"MAPPING_NAMES = {tuple(m['marker']['mappings'])}",
         f'DEFAULT_MAPPING_NAME = "{m["marker"]["default_mapping"]}"',
         f"GAMMAS = {tuple(m['led']['gammas'])}",
         f"HUE_WINDOW_DEG = {observed['hue_window_deg']}",
@@ -127,7 +129,8 @@ def vectors_json(vectors: dict[str, Any]) -> str:
     def records(key: str) -> str:
         return ",\n".join("  " + json.dumps(record) for record in vectors[key])
 
-    body = ",\n".join(f' "{k}": [\n{records(k)}\n ]' for k in ("frames", "rolling", "led"))
+    kinds = ("frames", "rolling", "led", "mappings")
+    body = ",\n".join(f' "{kind}": [\n{records(kind)}\n ]' for kind in kinds)
     return f'{{\n "banner": {json.dumps(vectors["banner"])},\n{body}\n}}\n'
 
 
@@ -178,6 +181,11 @@ def c_vectors(banner: str, vectors: dict[str, Any], pixels_digest: str) -> str:
             f" {braces(v['duties'])}}},"
         )
     parts += ["};", f"const size_t golden_led_count = {len(vectors['led'])};", ""]
+
+    parts.append("const uint16_t golden_marker_hues[METHOD_MAPPING_COUNT][METHOD_HUE_RANGE] = {")
+    for v in vectors["mappings"]:
+        parts.append(f"    {{ /* {v['mapping']} */\n{rows(v['hues'], '        ', 100)}}},")
+    parts += ["};", ""]
     return "\n".join(parts)
 
 

@@ -89,6 +89,7 @@ def frames() -> list[tuple[str, str, int, int, str, bytes]]:
     """Name, format, width, height, mapping, pixels of every golden frame."""
     pool = water(40, 140, 190, (250, 120, 240))
     lake = water(60, 110, 50, (90, 130, 250))
+    brown = water(113, 86, 33, (250, 60, 60))
     plans: list[tuple[str, str, int, int, str, Paint, float]] = [
         ("pool_qqvga", RGB565, 160, 120, "ternary", pool, 12),
         ("lake_qqvga", RGB565, 160, 120, "complement", lake, 12),
@@ -113,6 +114,9 @@ def frames() -> list[tuple[str, str, int, int, str, bytes]]:
         ("saturation_25", RGB888, 1, 1, "ternary", flat(230, 255, 255), 0),
         ("value_16", RGB888, 1, 1, "complement", flat(4, 10, 16), 0),
         ("value_15", RGB888, 1, 1, "complement", flat(4, 10, 15), 0),
+        ("pool_contrast", RGB565, 160, 120, "contrast", pool, 12),
+        ("brown_contrast", RGB888, 80, 60, "contrast", brown, 12),
+        ("night_contrast", RGB888, 1, 1, "contrast", flat(2, 4, 9), 0),
     ]
     return [
         (name, fmt, w, h, mapping, paint(fmt, w, h, colour, noise, seed))
@@ -135,7 +139,7 @@ def frame_vectors(m: Method, t: Tables) -> tuple[list[dict[str, Any]], bytes]:
         smoothed = reference.smooth(m, working)
         background = reference.background(m, t, smoothed)
         fallback = m["marker"]["fallback_hue"]
-        hue = reference.marker_hue(m, background, mapping, fallback)
+        hue = reference.marker_hue(m, t, background, mapping, fallback)
         records.append(
             {
                 "name": name,
@@ -183,6 +187,21 @@ def rolling_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
         means = [rolling.add(hue, now) for now, hue in decisions]
         vectors.append({"name": name, "window_ms": window, "decisions": decisions, "means": means})
     return vectors
+
+
+def mapping_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
+    """Every mapping's marker for water of every hue."""
+    fallback = m["marker"]["fallback_hue"]
+    return [
+        {
+            "mapping": mapping,
+            "hues": [
+                reference.marker_hue(m, t, {"hue": hue, "meaningful": True}, mapping, fallback)
+                for hue in range(m["hue"]["range"])
+            ],
+        }
+        for mapping in m["marker"]["mappings"]
+    ]
 
 
 def led_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:

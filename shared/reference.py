@@ -193,11 +193,17 @@ def background(m: Method, t: Tables, image: list[Pixel]) -> dict[str, Any]:
     }
 
 
-def marker_hue(m: Method, bkg: dict[str, Any], mapping: str, fallback_hue: int) -> int:
-    """The mapping turned from the background's hue, or the fallback."""
+def marker_hue(m: Method, t: Tables, bkg: dict[str, Any], mapping: str, fallback_hue: int) -> int:
+    """The mapping's hue for the background's, or the fallback; linear between nodes, halves up."""
     if not bkg["meaningful"]:
         return fallback_hue
-    return (bkg["hue"] + m["marker"]["mappings"][mapping]) % m["hue"]["range"]
+    turn, nodes = m["hue"]["range"], m["marker"]["nodes"]
+    step = turn // nodes
+    node, beyond = divmod(bkg["hue"], step)
+    at = m["marker"]["mappings"].index(mapping) * (nodes + 1) + node
+    here, there = t["MARKER_HUE"][at], t["MARKER_HUE"][at + 1]
+    hue = (2 * (here * (step - beyond) + there * beyond) + step) // (2 * step)
+    return hue % turn
 
 
 class RollingHue:

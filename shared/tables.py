@@ -37,6 +37,30 @@ def gamma(m: Method) -> list[int]:
     return [round(65535 * (i / 255) ** g) for g in m["led"]["gammas"] for i in range(256)]
 
 
+def marker_hue(m: Method) -> list[int]:
+    """For each mapping the marker's hue at every node of the water's, and at the first again.
+
+    Not taken modulo the turn, and so free of jumps: 0 or more, below two turns.
+    """
+    turn, nodes = m["hue"]["range"], m["marker"]["nodes"]
+    ways = []
+    for mapping in m["marker"]["mappings"]:
+        if mapping in m["marker"]["turns"]:
+            first = m["marker"]["turns"][mapping]
+            ways += [first + i * turn // nodes for i in range(nodes + 1)]
+        else:
+            ways += unwrapped(m["marker"][mapping], turn)
+    return ways
+
+
+def unwrapped(hues: list[int], turn: int) -> list[int]:
+    """A closed way round some hues, from each to the next on the shorter side."""
+    way = [hues[0]]
+    for hue in [*hues[1:], hues[0]]:
+        way.append(way[-1] + (hue - way[-1] + turn // 2) % turn - turn // 2)
+    return [hue - min(way) // turn * turn for hue in way]
+
+
 def all_tables(m: Method) -> dict[str, list[int]]:
     """Every table under its name in C and Python."""
     hue = m["hue"]
@@ -46,6 +70,7 @@ def all_tables(m: Method) -> dict[str, list[int]]:
         "SINE": sine(m),
         "ARCTANGENT": arctangent(m),
         "GAMMA": gamma(m),
+        "MARKER_HUE": marker_hue(m),
         **{
             f"HUE_DIVISION_{turn}": hue_division(turn, hue["opencv_shift"])
             for turn in hue["opencv_ranges"]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from chromadock.colour.background import background_colour
+from chromadock.colour.background import BackgroundColour, background_colour
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.working_image import (
     RGB565_SCALE,
@@ -37,6 +37,26 @@ def numpy_decision(data: bytes, width: int, height: int, fmt: str, mapping: str)
         **values,
         "marker_hue": marker_hue(background, mapping),
     }
+
+
+def of_hue(hue: int, meaningful: bool = True) -> BackgroundColour:
+    """Water of one hue all over."""
+    return BackgroundColour(
+        bin_counts=(0, 0, 4800, 0, 0),
+        bin=2,
+        hue_x=0,
+        hue_y=0,
+        chroma_sum=4800 * 80,
+        saturation_sum=4800 * 160,
+        value_sum=4800 * 128,
+        hue=hue,
+        saturation=160,
+        value=128,
+        resultant=255,
+        share=255,
+        confidence=255,
+        meaningful=meaningful,
+    )
 
 
 def c_decision(data: bytes, width: int, height: int, fmt: str, mapping: str) -> dict[str, Any]:

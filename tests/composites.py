@@ -43,11 +43,16 @@ def composites(
         yield compose(cv2.resize(photograph, SIZE), range_m, rng)
 
 
-def compose(photograph_bgr: np.ndarray, range_m: float, rng: np.random.Generator) -> Composite:
+def compose(
+    photograph_bgr: np.ndarray,
+    range_m: float,
+    rng: np.random.Generator,
+    mapping: str = "ternary",
+) -> Composite:
     """One frame: the dock somewhere in view, its markers lit by the mapping of this water."""
     rgb = photograph_bgr[..., ::-1]
     water = background_colour(smooth(working_image(np.ascontiguousarray(rgb))))
-    pure = to_linear(np.array(rgb_from_hsv(marker_hue(water, "ternary"), 255, 255)))
+    pure = to_linear(np.array(rgb_from_hsv(marker_hue(water, mapping), 255, 255)))
     R, t, pixels = _pose_in_view(range_m, rng)
     light = to_linear(rgb)
     attenuation = rng.uniform(*ATTENUATION)

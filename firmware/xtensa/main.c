@@ -23,6 +23,7 @@ int main(void)
     check_frames();
     check_rolling();
     check_leds();
+    check_mappings();
     const uint32_t different = check_close();
     if (!print_instructions())
         return UNEVEN_CLOCK;

@@ -169,3 +169,16 @@ void check_leds(void)
         check_end();
     }
 }
+
+void check_mappings(void)
+{
+    for (uint8_t mapping = 0; mapping < METHOD_MAPPING_COUNT; mapping++) {
+        check_begin("mapping", NULL, mapping);
+        for (uint16_t hue = 0; hue < METHOD_HUE_RANGE; hue++) {
+            const background_t water = {.hue = hue, .meaningful = true};
+            check_value("marker_hue", hue, golden_marker_hues[mapping][hue],
+                        marker_hue(&water, mapping, METHOD_FALLBACK_HUE));
+        }
+        check_end();
+    }
+}

@@ -7,6 +7,7 @@
 void check_frames(void);
 void check_rolling(void);
 void check_leds(void);
+void check_mappings(void);
 
 /* What the dock is given to reproduce a golden frame. */
 frame_t golden_frame(const golden_frame_t *golden);

@@ -38,5 +38,8 @@ extern const golden_rolling_t golden_rolling[];
 extern const size_t golden_rolling_count;
 extern const golden_led_t golden_leds[];
 extern const size_t golden_led_count;
+/* Of every mapping for water of every hue. */
+extern const uint16_t golden_marker_hues[METHOD_MAPPING_COUNT]
+                                        [METHOD_HUE_RANGE];
 
 #endif

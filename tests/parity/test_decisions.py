@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from comparison import assert_same, c_decision, numpy_decision
 
+from chromadock.colour.marker import MAPPINGS
+
 ROOT = Path(__file__).resolve().parents[2]
 PHOTOGRAPHS = ROOT.parent / "shared" / "data" / "transdec"
 
@@ -41,7 +43,7 @@ def test_random_frames(batch: int) -> None:
         height, width = rgb.shape[:2]
         fmt = ("rgb888", "rgb565")[i % 2]
         data = rgb.tobytes() if fmt == "rgb888" else to_rgb565(rgb)
-        mapping = ("ternary", "complement")[rng.integers(2)]
+        mapping = MAPPINGS[rng.integers(len(MAPPINGS))]
         call = (data, width, height, fmt, mapping)
         assert_same(c_decision(*call), numpy_decision(*call), f"{batch}/{i} {width}x{height} {fmt}")
 

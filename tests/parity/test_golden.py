@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from comparison import assert_same, c_decision, numpy_decision
+from comparison import assert_same, c_decision, numpy_decision, of_hue
 
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.colour.marker import RollingHue
+from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
 from chromadock_firmware import Dock, Settings, ffi, lib
 
 
@@ -56,6 +56,18 @@ def test_led_duties_in_c(golden: dict[str, Any]) -> None:
         duty = ffi.new("uint16_t[3]")
         lib.led_duties(duty, vector["hue"], ffi.addressof(settings, "led"))
         assert list(duty) == vector["duties"], vector
+
+
+def test_every_mapping_for_water_of_every_hue_in_numpy_and_c(golden: dict[str, Any]) -> None:
+    assert [vector["mapping"] for vector in golden["mappings"]] == list(MAPPINGS)
+    water = ffi.new("background_t *", {"meaningful": True})
+    for number, vector in enumerate(golden["mappings"]):
+        for hue, expected in enumerate(vector["hues"]):
+            water.hue = hue
+            where = (vector["mapping"], hue)
+            assert lib.marker_hue(water, number, lib.METHOD_FALLBACK_HUE) == expected, where
+            assert marker_hue(of_hue(hue), vector["mapping"]) == expected, where
+        assert len(vector["hues"]) == lib.METHOD_HUE_RANGE
 
 
 def test_a_whole_dock_gives_the_golden_duties(golden: dict[str, Any]) -> None:

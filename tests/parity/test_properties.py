@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from comparison import of_hue
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from chromadock.colour.hsv import hue_of_vector, rgb_from_hsv
-from chromadock.colour.marker import RollingHue
+from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
 from chromadock_firmware import ffi, lib
 
 HUE = st.integers(0, lib.METHOD_HUE_RANGE - 1)
@@ -84,3 +85,21 @@ def test_the_colour_of_any_hue_saturation_and_value(hue: int, saturation: int, v
     assert rgb == rgb_from_hsv(hue, saturation, value)
     assert max(rgb) == value
     assert abs(max(rgb) - min(rgb) - value * saturation / 255) <= 0.5
+
+
+@given(HUE, st.booleans(), st.sampled_from(MAPPINGS), HUE)
+def test_the_marker_of_any_water(hue: int, meaningful: bool, mapping: str, fallback: int) -> None:
+    water = ffi.new("background_t *", {"hue": hue, "meaningful": meaningful})
+    marker = lib.marker_hue(water, MAPPINGS.index(mapping), fallback)
+    assert marker == marker_hue(of_hue(hue, meaningful), mapping, fallback)
+    assert 0 <= marker < lib.METHOD_HUE_RANGE
+    assert meaningful or marker == fallback
+
+
+@given(HUE, HUE)
+def test_contrast_turns_at_most_half_as_far_as_the_water(one: int, other: int) -> None:
+    water, marker = (
+        min((b - a) % lib.METHOD_HUE_RANGE, (a - b) % lib.METHOD_HUE_RANGE)
+        for a, b in ((one, other), [marker_hue(of_hue(h), "contrast") for h in (one, other)])
+    )
+    assert 2 * marker <= water + 1

@@ -59,6 +59,8 @@ def test_every_golden_value_was_compared(measured: dict[str, Any], golden: dict[
         expected["rolling", str(number)] = len(sequence["means"])
     for number, led in enumerate(golden["led"]):
         expected["led", str(number)] = len(led["duties"])
+    for number, mapping in enumerate(golden["mappings"]):
+        expected["mapping", str(number)] = len(mapping["hues"])
     compared = {(v["kind"], v["name"]): v["values"] for v in measured["vectors"]}
     assert compared == expected
 

@@ -10,7 +10,7 @@ from chromadock import method
 from chromadock.colour.background import BackgroundColour
 from chromadock.colour.hsv import hue_cos, hue_of_vector, hue_sin
 
-MAPPINGS: tuple[str, ...] = tuple(method.MAPPING_TURN)
+MAPPINGS: tuple[str, ...] = method.MAPPING_NAMES
 
 
 def marker_hue(
@@ -18,12 +18,17 @@ def marker_hue(
 ) -> int:
     """Hue 0..1535 of the pure colour that the markers should show.
 
-    The background's hue turned by ``mapping`` (one of ``MAPPINGS``), or
-    ``fallback_hue`` where the background's means nothing.
+    What ``mapping`` (one of ``MAPPINGS``) has for the background's hue, linear between
+    nodes, or ``fallback_hue`` where the background's hue means nothing.
     """
     if not background.meaningful:
         return fallback_hue
-    return (background.hue + method.MAPPING_TURN[mapping]) % method.HUE_RANGE
+    step = method.MARKER_NODE_STEP
+    node, beyond = divmod(background.hue, step)
+    first = MAPPINGS.index(mapping) * (method.MARKER_NODES + 1) + node
+    here, there = method.MARKER_HUE[first : first + 2].tolist()
+    hue: int = (here * (step - beyond) + there * beyond + step // 2) // step
+    return hue % method.HUE_RANGE
 
 
 class RollingHue:

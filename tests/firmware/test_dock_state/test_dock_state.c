@@ -73,7 +73,7 @@ static void assert_gives_way_to_the_defaults(dock_settings_t settings)
 static void test_an_unknown_mapping_gives_way_to_the_defaults(void)
 {
     dock_settings_t settings = dock_default_settings();
-    settings.mapping = 2;
+    settings.mapping = METHOD_MAPPING_COUNT;
     assert_gives_way_to_the_defaults(settings);
 }
 

@@ -4,9 +4,8 @@
 
 #include "background.h"
 
-/* Hue of the marker, a pure colour: the background's turned by `mapping`
- * (METHOD_MAPPING_...), or `fallback_hue` where the background's means nothing.
- */
+/* Hue of the marker, a pure colour: what `mapping` (METHOD_MAPPING_...) has for
+ * the background's, or `fallback_hue` where the background's means nothing. */
 uint16_t marker_hue(const background_t *background, uint8_t mapping,
                     uint16_t fallback_hue);
 

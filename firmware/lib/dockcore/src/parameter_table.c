@@ -8,7 +8,7 @@
 #define FIELD(name) offsetof(dock_settings_t, name), sizeof(((dock_settings_t *)0)->name)
 
 const parameter_t PARAMETERS[PARAMETER_COUNT] = {
-    {"MAPPING", FIELD(mapping), 0, 1, 0, 1, 0},
+    {"MAPPING", FIELD(mapping), 0, 2, 0, 1, 0},
     {"WINDOW_MS", FIELD(window_ms), 100, 2000, 2000, 1, 0},
     {"FALLBACK_HUE", FIELD(fallback_hue), 0, 1535, 512, 15, 6},
     {"LED_MODE", FIELD(led_mode), 0, 1, 0, 1, 0},

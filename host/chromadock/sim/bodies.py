@@ -117,7 +117,11 @@ class Bodies:
             T_camera_world = self._view.T_world_camera(time_s).inverse()
             frames = {"world": T_camera_world}
             frames["dock"] = T_camera_world @ self._view.T_world_dock(time_s)
-            shapes = [(body, body.shape.moved(frames[body.fixed_to])) for body in self._bodies]
+            shapes = [
+                (body, body.shape.moved(frames[body.fixed_to]))
+                for body in self._bodies
+                if body.there(time_s)
+            ]
             self._placed = (time_s, shapes)
         return self._placed[1]
 

@@ -25,8 +25,15 @@ class Body:
         (61,) 0..1, matt.
     fixed_to
         ``"dock"``: bobs with it; ``"world"``.
+    present_s
+        From when until when it is there; None: always.
     """
 
     shape: Shape
     reflectance: Floats
     fixed_to: Literal["dock", "world"]
+    present_s: tuple[float, float] | None = None
+
+    def there(self, time_s: float) -> bool:
+        """Whether it is there at a moment."""
+        return self.present_s is None or self.present_s[0] <= time_s < self.present_s[1]

@@ -78,7 +78,6 @@ class Markers:
         self._view = view
         self._lamps = lamps
         self._bodies = bodies
-        self._works = scene.works.astype(np.float64)
 
     def placed(self, time_s: float, hidden: bool = True) -> Placed:
         """Where they are in the frame of ``time_s``; without ``hidden``, as if nothing hid them."""
@@ -96,33 +95,36 @@ class Markers:
         """Add the lamps, and their images in the surface, to a (H, W, 3) signal, in place."""
         if not np.any(led_share):
             return
-        self._lamps.draw(light, placed.points, placed.axes, led_share, placed.visible * self._works)
+        works = self._works(time_s)
+        self._lamps.draw(light, placed.points, placed.axes, led_share, placed.visible * works)
         pose = self._view.T_world_camera(time_s)
         self._lamps.draw_mirrored(
             light,
             placed.points,
             placed.axes,
             led_share,
-            self._works,
+            works,
             waves=self._scene.waves,
             time_s=time_s,
             R_world_camera=pose.R,
             depth_m=depth_of(pose),
         )
 
-    def irradiance(self, placed: Placed, led_share: ArrayLike) -> Floats:
+    def irradiance(self, placed: Placed, led_share: ArrayLike, time_s: float) -> Floats:
         """(N, 3) unscattered light at the camera from each marker, signal sr; 0 where hidden."""
         ranges = np.linalg.norm(placed.points, axis=1)
         cosine = -np.einsum("ij,ij->i", placed.points, placed.axes) / ranges
         emitted = np.maximum(cosine, 0) ** self._scene.lamp.cosine_power
-        shares = emitted * placed.visible * self._works
+        shares = emitted * placed.visible * self._works(time_s)
         return np.asarray(shares[:, None] * self._lamps.signal(ranges, led_share))
 
-    def truth(self, placed: Placed, led_share: ArrayLike, water: Floats) -> tuple[MarkerTruth, ...]:
+    def truth(
+        self, placed: Placed, led_share: ArrayLike, water: Floats, time_s: float
+    ) -> tuple[MarkerTruth, ...]:
         """What is true of them before ``water`` (3,) signal."""
         ranges = np.linalg.norm(placed.points, axis=1)
-        lit = self._scene.works & np.any(led_share)
-        contrast = self._peaks(placed, led_share, ranges) / np.maximum(water, _DARK)
+        lit = self._scene.works(time_s) & np.any(led_share)
+        contrast = self._peaks(placed, led_share, ranges, time_s) / np.maximum(water, _DARK)
         return tuple(
             MarkerTruth(
                 name=name,
@@ -167,13 +169,17 @@ class Markers:
         inside[inside] = np.linalg.norm(rays - directions, axis=1) < _SAME_RAY
         return inside
 
-    def _peaks(self, placed: Placed, led_share: ArrayLike, ranges: Floats) -> Floats:
+    def _works(self, time_s: float) -> Floats:
+        """(N,) 1 where a lamp works, 0 where not."""
+        return self._scene.works(time_s).astype(np.float64)
+
+    def _peaks(self, placed: Placed, led_share: ArrayLike, ranges: Floats, time_s: float) -> Floats:
         """(N, 3) signal in the middle of each core: a disc that the lens blurs."""
         peaks = np.zeros((len(ranges), 3))
         seen = placed.in_view
         angles = solid_angles(self._camera, placed.pixels[seen])
         radius = self._scene.lamp.diameter_m / 2 / ranges[seen] / np.sqrt(angles)
         within = -np.expm1(-(radius**2) / (2 * LENS_SIGMA_PX**2)) / (np.pi * radius**2)
-        energy = self.irradiance(placed, led_share)[seen]
+        energy = self.irradiance(placed, led_share, time_s)[seen]
         peaks[seen] = energy * (within / angles)[:, None]
         return peaks

@@ -114,7 +114,7 @@ class Renderer:
         mean = self._backdrop.mean(time_s, self._view.T_world_camera(time_s))
         if self._markers is not None and np.any(led_share):
             placed = self._markers.placed(time_s, hidden=False)
-            energy = self._markers.irradiance(placed, led_share)[placed.in_view].sum(axis=0)
+            energy = self._markers.irradiance(placed, led_share, time_s)[placed.in_view].sum(axis=0)
             mean = mean + energy / self._solid_angle
         return mean
 
@@ -178,7 +178,7 @@ class Renderer:
         T_world_camera = self._view.T_world_camera(time_s)
         markers: tuple[MarkerTruth, ...] = ()
         if self._markers is not None and placed is not None:
-            markers = self._markers.truth(placed, led_share, water)
+            markers = self._markers.truth(placed, led_share, water, time_s)
         north, east, depth = T_world_camera.t
         forward = T_world_camera.R[:, 2]
         ambient = self._scene.ambient

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -24,7 +24,9 @@ from chromadock.sim.scene_bodies import body_of, frame_of
 from chromadock.sim.scene_file import SHIPPED, SceneTables
 from chromadock.sim.waves import GaussianField
 
-__all__ = ["SHIPPED", "Scene", "load_scene"]
+__all__ = ["SHIPPED", "Overrides", "Scene", "load_scene"]
+
+Overrides = Mapping[str, Any] | Sequence[Mapping[str, Any]] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +49,8 @@ class Scene:
         Where the markers are.
     lamp
         What shines in each.
-    works
-        (N,) bool: which markers' lamps work.
+    dark_from_s
+        (N,) when each marker's lamp fails; infinity: never.
     bodies
         All that is solid.
     motion
@@ -66,15 +68,19 @@ class Scene:
     basin: Basin
     dock: DockGeometry
     lamp: LampSpec
-    works: NDArray[np.bool_]
+    dark_from_s: NDArray[np.float64]
     bodies: tuple[Body, ...]
     motion: Motion
     suspension: Suspension | None
     vehicle_camera: CameraSpec
     dock_camera: CameraSpec
 
+    def works(self, time_s: float) -> NDArray[np.bool_]:
+        """(N,) which markers' lamps work at a moment."""
+        return time_s < self.dark_from_s
 
-def load_scene(name_or_path: str | Path, overrides: Mapping[str, Any] | None = None) -> Scene:
+
+def load_scene(name_or_path: str | Path, overrides: Overrides = None) -> Scene:
     """The shipped scene of that name, or the one in a TOML file laid out like it.
 
     Parameters
@@ -83,7 +89,8 @@ def load_scene(name_or_path: str | Path, overrides: Mapping[str, Any] | None = N
         One of ``SHIPPED`` or a file; files that it names are looked for beside it.
     overrides
         Values that replace the file's, by dotted keys: ``{"vehicle.distance_m": 3.0}``; a number
-        counts in a list from 0, as in ``"body.0.rgb"``.  Missing tables are made.
+        counts in a list from 0, as in ``"body.0.rgb"``, and ``+`` adds to one, as in ``"body.+"``.
+        Missing tables are made.  Of several, one after the other is applied.
 
     Raises
     ------
@@ -91,14 +98,15 @@ def load_scene(name_or_path: str | Path, overrides: Mapping[str, Any] | None = N
         One line with the file, the key, what is wrong and what is allowed.
     """
     tables = SceneTables(str(name_or_path))
-    for key, value in (overrides or {}).items():
-        tables.put(key, value)
+    for changes in [overrides] if isinstance(overrides, Mapping) else overrides or ():
+        for key, value in changes.items():
+            tables.put(key, value)
     file = tables.validated()
     waves, dock_sway, vehicle_sway, specks = (
         np.random.SeedSequence(file.seed).generate_state(4).tolist()
     )
     water = parts.named(f"{tables.source_of('water')}: water", lambda: parts.water_of(file.water))
-    dock, works = parts.dock_of(file.dock, tables.source_of("dock"))
+    dock, dark_from_s = parts.dock_of(file.dock, tables.source_of("dock"))
     bodies = frame_of(dock, file.dock)
     for i, section in enumerate(file.body):
         where = f"{tables.source_of('body')}: body {i + 1}"
@@ -115,7 +123,7 @@ def load_scene(name_or_path: str | Path, overrides: Mapping[str, Any] | None = N
         basin=parts.basin_of(file.place),
         dock=dock,
         lamp=parts.lamp_of(file.dock.lamp),
-        works=works,
+        dark_from_s=dark_from_s,
         bodies=tuple(bodies),
         motion=parts.motion_of(file, tables.source, dock_sway, vehicle_sway),
         suspension=parts.suspension_of(file.particles, specks),

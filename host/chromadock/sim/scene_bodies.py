@@ -46,9 +46,15 @@ def body_of(section: BodySection) -> Body:
     Raises
     ------
     ValueError
-        For a shape without length or area, in words to follow its name.
+        For a shape without length or area, or a time without end, in words to follow its name.
     """
-    return Body(_shape(section), reflectance(section.rgb), section.fixed_to)
+    present_s = None
+    if section.present_s is not None:
+        start, end = section.present_s
+        if start >= end:
+            raise ValueError(f"present_s is [{start:g}, {end:g}]: the first must be the smaller")
+        present_s = (start, end)
+    return Body(_shape(section), reflectance(section.rgb), section.fixed_to, present_s)
 
 
 def _shape(section: BodySection) -> Shape:

@@ -42,7 +42,7 @@ class SceneTables:
         self.source = self._read(name_or_path, ())
 
     def put(self, dotted: str, value: Any) -> None:
-        """Set the value of a dotted key; numbers count in lists, from 0.
+        """Set the value of a dotted key; numbers count in lists, from 0, and + adds to one.
 
         Raises
         ------
@@ -60,6 +60,8 @@ class SceneTables:
                 raise self._no_place(dotted, f"{'.'.join(path[: i + 1])} is not a table")
         if isinstance(table, dict):
             table[last] = copy.deepcopy(value)
+        elif last == "+":
+            table.append(copy.deepcopy(value))
         elif last.isdecimal() and int(last) < len(table):
             table[int(last)] = copy.deepcopy(value)
         else:

@@ -62,6 +62,11 @@ _Coefficients = Annotated[
     Field(min_length=2),
     allowed("two or more numbers, each more than 0, at most 1000"),
 ]
+_Span = Annotated[
+    list[Annotated[float, Field(ge=-1e6, le=1e6)]],
+    Field(min_length=2, max_length=2),
+    allowed("[start, end], each -1000000 to 1000000 s"),
+]
 _Radius = Annotated[float, between(0.0005, 50, "m")]
 _Offset = Annotated[float, between(-20, 20, "m")]
 _Angle = Annotated[float, between(-90, 90, "degrees")]
@@ -179,11 +184,19 @@ class LampSection(_Section):
     half_angle_deg: Annotated[float, between(5, 85, "degrees")]
 
 
+class FailureSection(_Section):
+    """An element of ``dock.failure``."""
+
+    marker: str
+    at_s: _Moment
+
+
 class DockSection(_Section):
     """``[dock]``."""
 
     geometry: str = ""
     markers_out: list[str] = []
+    failure: list[FailureSection] = []
     frame: bool = True
     frame_rgb: _Colour = [0.03, 0.03, 0.03]
     lamp: LampSection
@@ -205,9 +218,10 @@ class BodySection(_OfKind):
     size_m: _Size = [1.0, 1.0, 1.0]
     half_across_m: _Vector = _ORIGIN
     half_down_m: _Vector = _ORIGIN
+    present_s: _Span | None = None
 
     chooser: ClassVar[str] = "shape"
-    common: ClassVar[frozenset[str]] = frozenset({"rgb", "fixed_to"})
+    common: ClassVar[frozenset[str]] = frozenset({"rgb", "fixed_to", "present_s"})
     needed: ClassVar[dict[str, tuple[str, ...]]] = {
         "sphere": ("centre_m", "radius_m"),
         "tube": ("from_m", "to_m", "radius_m"),

@@ -72,18 +72,23 @@ def basin_of(place: models.PlaceSection) -> Basin:
     )
 
 
-def dock_of(section: models.DockSection, source: str) -> tuple[DockGeometry, NDArray[np.bool_]]:
-    """The markers, and (N,) bool which of their lamps work."""
+def dock_of(section: models.DockSection, source: str) -> tuple[DockGeometry, NDArray[np.float64]]:
+    """The markers, and (N,) seconds from which each lamp is dark."""
     dock = DockGeometry.default()
     if section.geometry:
         dock = named(f"{source}: dock.geometry", lambda: DockGeometry.from_toml(section.geometry))
-    for name in section.markers_out:
+    fails = [(f.marker, f.at_s) for f in section.failure]
+    named_in = [("markers_out has", name) for name in section.markers_out]
+    for key, name in (*named_in, *(("failure is of", name) for name, _ in fails)):
         if name not in dock.names:
             raise ChromadockError(
-                f"{source}: dock.markers_out has {shown(name)}: "
-                f"it must name some of {', '.join(dock.names)}"
+                f"{source}: dock.{key} {shown(name)}: it must name some of {', '.join(dock.names)}"
             )
-    return dock, np.array([name not in section.markers_out for name in dock.names])
+    fails += [(name, -np.inf) for name in section.markers_out]
+    dark_from_s = [
+        min([at_s for name, at_s in fails if name == n], default=np.inf) for n in dock.names
+    ]
+    return dock, np.array(dark_from_s)
 
 
 def lamp_of(section: models.LampSection) -> LampSpec:

@@ -289,6 +289,15 @@ def test_things_fixed_to_the_dock_move_with_it_and_others_do_not() -> None:
     assert middle(bodies(outside, view=view), 1.0) == pytest.approx(79.5, abs=0.1)
 
 
+def test_a_body_that_is_present_for_a_while_is_seen_and_hides_only_then() -> None:
+    passing = Body(Sphere(np.array([0, 0, 2.0]), 0.1), WHITE, "dock", (1.0, 1.5))
+    seen = bodies(passing)
+    behind = np.array([[0.0, 0.0, 3.0]])
+    for time_s, there in ((0.99, False), (1.0, True), (1.49, True), (1.5, False)):
+        assert (drawn(seen, time_s=time_s).max() > 0) == there
+        assert seen.visible(behind, 0.01, time_s)[0] == pytest.approx(0.0 if there else 1.0)
+
+
 def test_a_rolling_shutter_slants_a_post_that_moves() -> None:
     view = View(speed_m_s=np.array([2.0, 0.0, 0.0]))
     post = Tube(np.array([0, -3.0, 2.0]), np.array([0, 3.0, 2.0]), 0.05)

@@ -100,12 +100,42 @@ def test_overrides_reach_every_table(tmp_path: Path) -> None:
     ball = scene.bodies[4].shape
     assert isinstance(ball, Sphere)
     assert (ball.radius_m, ball.centre[2]) == (0.2, 0.3)
-    assert dict(zip(scene.dock.names, scene.works, strict=True))["top_left"] == np.False_
-    assert scene.works.sum() == 3
+    assert dict(zip(scene.dock.names, scene.works(0.0), strict=True))["top_left"] == np.False_
+    assert scene.works(0.0).sum() == 3
     assert scene.dock_camera.control.white_balance == "auto"
     assert scene.vehicle_camera.control.ev == -1.0
     assert scene.ambient.clouds[0].illuminance_share(50.0) == pytest.approx(0.3)
     assert load_scene("pool").seed == 1  # not remembered
+
+
+def test_a_lamp_may_fail_on_the_way() -> None:
+    failure = [{"marker": "top_right", "at_s": 20.0}]
+    scene = load_scene("pool", {"dock.failure": failure, "dock.markers_out": ["top_left"]})
+    working = {t: [n for n, w in zip(scene.dock.names, scene.works(t), strict=True) if w]
+               for t in (0.0, 19.9, 20.0)}  # fmt: skip
+    assert working[0.0] == working[19.9] == ["top_right", "bottom_left", "bottom_right"]
+    assert working[20.0] == ["bottom_left", "bottom_right"]
+    with pytest.raises(ChromadockError, match=r"failure is of 'left'.* top_left"):
+        load_scene("pool", {"dock.failure": [{"marker": "left", "at_s": 1.0}]})
+
+
+def test_a_body_can_be_added_to_those_of_the_scene() -> None:
+    ball = {"shape": "sphere", "rgb": [1.0, 0.0, 0.0], "centre_m": [0.0, 0.0, -1.0]}
+    ball |= {"radius_m": 0.1, "present_s": [2.0, 2.5]}
+    before, after = load_scene("pool").bodies, load_scene("pool", {"body.+": ball}).bodies
+    assert len(after) == len(before) + 1
+    assert [after[-1].there(t) for t in (1.99, 2.0, 2.49, 2.5)] == [False, True, True, False]
+    assert after[0].there(1e9)
+    with pytest.raises(ChromadockError, match=r"present_s is \[2, 1\]"):
+        load_scene("pool", {"body.+": {**ball, "present_s": [2.0, 1.0]}})
+
+
+def test_of_several_changes_the_later_are_applied_to_the_earlier() -> None:
+    ball = {"shape": "sphere", "rgb": [1.0, 0.0, 0.0], "centre_m": [0.0, 0.0, 0.0]}
+    added = {"body.+": {**ball, "radius_m": 0.1}}
+    scene = load_scene("pool", [{"seed": 3, **added}, {"seed": 4, **added}])
+    assert scene.seed == 4
+    assert len(scene.bodies) == len(load_scene("pool").bodies) + 2
 
 
 def test_a_copy_builds_on_the_original_or_on_another_copy(tmp_path: Path) -> None:
@@ -136,7 +166,7 @@ def test_files_are_looked_for_beside_the_scene_that_names_them(tmp_path: Path) -
     scene = load_scene(tmp_path / "scene.toml")
     assert scene.vehicle_camera.sensor.f_number == 4.0
     assert scene.dock.names == ("a", "b", "c")
-    assert scene.works.tolist() == [True, False, True]
+    assert scene.works(0.0).tolist() == [True, False, True]
 
 
 BAD = {

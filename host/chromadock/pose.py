@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.detection import Pose
 from chromadock.rotation import quaternion_from_matrix
+
+_MAX_ROUNDS = 100  # most take five; along the flat valley of a far plane it is slow
+# A round that takes less than this off chi-square moves the pose by a thirtieth of its error.
+_CONVERGED = 1e-3
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-9, 1e-3, 1e6
+_EXCLUDED = 20.0  # chi-square: a pose that fits by so much worse is not open; e^10 to one
+_SAME_ROTATION = 1e-3  # radians, between two minima that are one
+_PLANAR = 1e-6  # thickness over width of a set of points
 
 
 def epnp(
@@ -42,3 +52,229 @@ def epnp(
         q_wxyz=quaternion_from_matrix(R),
         reprojection_px=float(np.sqrt((error**2).sum(axis=1).mean())),
     )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Estimate:
+    """A pose that fits better than all nearby, and how sure it is.
+
+    ``R`` (3, 3) and ``t`` (3,), metres, are ``T_camera_dock``.  ``chi_square``: the sum of
+    squared errors in their standard deviations.  ``reprojection_px``: root mean square distance
+    of the reprojected markers from the measured ones.  ``information`` (6, 6): the inverse of
+    the covariance of x, y, z, metres, and of small turns about the camera's x, y and z axes
+    through the dock's origin, radians.
+    """
+
+    R: NDArray[np.float64]
+    t: NDArray[np.float64]
+    chi_square: float
+    reprojection_px: float
+    information: NDArray[np.float64]
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """(6, 6) float64, the inverse of ``information``; what is unknown has a large variance."""
+        return np.asarray(np.linalg.pinv(self.information, rcond=1e-14, hermitian=True))
+
+    def distance(self, R: NDArray[np.float64], t: NDArray[np.float64]) -> float:
+        """Mahalanobis distance squared of another pose; below 12.6 for 95% of true poses."""
+        turn = cv2.Rodrigues(R @ self.R.T)[0].ravel()
+        off = np.concatenate([t - self.t, turn])
+        return float(off @ self.information @ off)
+
+    def pose(self, alternative: Pose | None = None) -> Pose:
+        """The same for a ``Detection``."""
+        x, y, z = self.t.tolist()
+        return Pose(
+            (x, y, z),
+            quaternion_from_matrix(self.R),
+            self.reprojection_px,
+            alternative,
+            tuple(self.covariance.ravel().tolist()),
+        )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sighting:
+    """Markers and where they were seen.
+
+    ``points_dock`` (N, 3) float64, metres; ``pixels`` (N, 2) float64; ``sigma_px`` (N,) float64:
+    standard deviation of each pixel, in x as in y; N >= 3.
+    """
+
+    points_dock: NDArray[np.float64]
+    pixels: NDArray[np.float64]
+    sigma_px: NDArray[np.float64]
+    camera: CameraModel
+
+
+def estimates(sighting: Sighting) -> tuple[Estimate, ...]:
+    """All poses that the markers leave open, the better first.
+
+    From afar a plane that is tilted one way looks as if it were tilted the other way
+    (Schweighofer and Pinz, PAMI 28 (2006) 2024): where each of the two is a minimum of the
+    reprojection error both are returned, and only motion or other sensors can tell.  Three
+    markers fit up to four poses exactly (Gao et al., PAMI 25 (2003) 930): no error ranks
+    them, and that comes first which turns the dock's face most squarely to the camera.
+
+    Returns
+    -------
+    None, one or two estimates, of three markers up to four; all markers in front of the camera.
+    """
+    if len(sighting.pixels) == 3:
+        return _of_three(sighting)
+    start = _first_guess(sighting)
+    first = None if start is None else refined(sighting, *start)
+    if first is None:
+        return ()
+    second = refined(sighting, _tilted_back(first, sighting.points_dock), first.t)
+    if second is None or same_rotation(second.R, first.R):
+        return (first,)
+    better, worse = sorted((first, second), key=lambda estimate: estimate.chi_square)
+    return (better,) if worse.chi_square > better.chi_square + _EXCLUDED else (better, worse)
+
+
+def refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) -> Estimate | None:
+    """The minimum of chi-square downhill of a pose, by Levenberg and Marquardt's method.
+
+    None where a marker would be behind the camera, or none is reached in so many rounds: the way
+    there leads through poses that hardly fit.
+    """
+    damping = _FIRST_DAMPING
+    now = _Fit.of(sighting, R, t)
+    if now is None:
+        return None
+    for _ in range(_MAX_ROUNDS):
+        information, gradient = now.jacobian.T @ now.jacobian, now.jacobian.T @ now.error
+        damped = information + damping * np.diag(np.diag(information) + 1e-12)
+        step = np.linalg.solve(damped, -gradient)
+        after = _Fit.of(sighting, np.asarray(cv2.Rodrigues(step[3:])[0]) @ R, t + step[:3])
+        if after is not None and after.chi_square <= now.chi_square:
+            gained = now.chi_square - after.chi_square
+            now, R, t = after, after.R, after.t
+            damping = max(damping / 10, _LEAST_DAMPING)
+            if gained < _CONVERGED:
+                break
+        else:
+            damping *= 10
+            if damping > _MOST_DAMPING:
+                break
+    else:
+        return None
+    off = now.error.reshape(-1, 2) * sighting.sigma_px[:, None]
+    reprojection_px = float(np.sqrt((off**2).sum(axis=1).mean()))
+    return Estimate(R, t, now.chi_square, reprojection_px, now.jacobian.T @ now.jacobian)
+
+
+def same_rotation(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
+    """Whether two minima (3, 3) are one, up to where their search ended."""
+    return bool(np.abs(a - b).max() < _SAME_ROTATION)
+
+
+def projected(
+    points_dock: NDArray[np.float64],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    camera: CameraModel,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Pixels (N, 2) of markers at a pose, and their derivatives (N, 2, 6).
+
+    The derivatives are by x, y, z and by turns about the camera's axes, as in ``Estimate``.
+    None where a marker is behind the camera.
+    """
+    arms = points_dock @ R.T
+    seen = arms + t
+    if (seen[:, 2] <= 0).any():
+        return None
+    zero = np.zeros(3)
+    pixels, derivatives = cv2.projectPoints(seen, zero, zero, camera.matrix, camera.distortion)
+    by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(-1, 2, 3)
+    both = np.empty((len(arms), 2, 6))
+    both[..., :3] = by_place
+    # The arms' cross product with them, by components: np.cross takes several times as long.
+    (ax, ay, az), (x, y, z) = arms.T[..., None], np.moveaxis(by_place, 2, 0)
+    both[..., 3], both[..., 4], both[..., 5] = ay * z - az * y, az * x - ax * z, ax * y - ay * x
+    return np.asarray(pixels, np.float64).reshape(-1, 2), both
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Fit:
+    """Errors of a pose in their standard deviations (2N,), and their derivatives (2N, 6)."""
+
+    R: NDArray[np.float64]
+    t: NDArray[np.float64]
+    error: NDArray[np.float64]
+    jacobian: NDArray[np.float64]
+    chi_square: float
+
+    @classmethod
+    def of(cls, sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) -> _Fit | None:
+        seen = projected(sighting.points_dock, R, t, sighting.camera)
+        if seen is None:
+            return None
+        pixels, derivatives = seen
+        error = ((pixels - sighting.pixels) / sighting.sigma_px[:, None]).ravel()
+        jacobian = (derivatives / sighting.sigma_px[:, None, None]).reshape(-1, 6)
+        return cls(R, t, error, jacobian, float(error @ error))
+
+
+def _of_three(sighting: Sighting) -> tuple[Estimate, ...]:
+    """All poses of three markers, the least turned first."""
+    rays = sighting.camera.undistort(sighting.pixels)
+    _, rotations, translations = cv2.solveP3P(
+        sighting.points_dock, rays, np.eye(3), None, flags=cv2.SOLVEPNP_AP3P
+    )
+    starts = [
+        (_matrix(rotation), np.asarray(translation, np.float64).ravel())
+        for rotation, translation in zip(rotations, translations, strict=True)
+        if np.isfinite(rotation).all() and np.isfinite(translation).all()
+    ]
+    # Of two poses close together noise may leave none that fits exactly, but one that fits well.
+    starts += [(_matrix(np.zeros(3)), t) for _, t in starts]
+    found: list[Estimate] = []
+    for R, t in starts:
+        pose = refined(sighting, R, t)
+        if pose is not None and not any(same_rotation(pose.R, other.R) for other in found):
+            found.append(pose)
+    return tuple(sorted(found, key=lambda pose: -float(np.trace(pose.R))))
+
+
+def _first_guess(
+    sighting: Sighting,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Some pose of four markers or more near one of the minima, without need of a start."""
+    spread = np.linalg.svd(_centred(sighting.points_dock), compute_uv=False)
+    planar = spread[2] < _PLANAR * spread[0]
+    rays = sighting.camera.undistort(sighting.pixels)
+    _, rotations, translations, _ = cv2.solvePnPGeneric(
+        sighting.points_dock,
+        rays,
+        np.eye(3),
+        None,
+        # SQPnP's guess for a dock with depth is now and then behind the camera.
+        flags=cv2.SOLVEPNP_IPPE if planar else cv2.SOLVEPNP_EPNP,
+    )
+    for rotation, translation in zip(rotations, translations, strict=True):
+        if np.isfinite(rotation).all() and np.isfinite(translation).all():
+            return _matrix(rotation), np.asarray(translation, np.float64).ravel()
+    return None
+
+
+def _tilted_back(estimate: Estimate, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rotation that shows a plane at the same places, tilted the other way.
+
+    Mirrored in depth along the line of sight, and the plane in itself.
+    """
+    view = estimate.t / np.linalg.norm(estimate.t)
+    normal = np.linalg.svd(_centred(points))[2][2]
+    mirror = np.eye(3) - 2 * np.outer(view, view)
+    return np.asarray(mirror @ estimate.R @ (np.eye(3) - 2 * np.outer(normal, normal)))
+
+
+def _centred(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(points - points.mean(axis=0), np.float64)
+
+
+def _matrix(rotation: ArrayLike) -> NDArray[np.float64]:
+    """(3, 3) of a rotation vector."""
+    return np.asarray(cv2.Rodrigues(np.asarray(rotation, np.float64))[0], np.float64)

@@ -60,7 +60,9 @@ def background_colour(image: NDArray[np.uint8]) -> BackgroundColour:
     bins = grey_bins(image)
     counts = np.bincount(bins.ravel(), minlength=method.GREY_BINS)
     fullest = int(np.argmax(counts))  # the first of equals: ties go to the darker
-    hue, saturation, value, chroma = hsv_from_rgb(image[bins == fullest])
+    hue, saturation, value, chroma = hsv_from_rgb(
+        image.reshape(-1, 3)[np.flatnonzero(bins == fullest)]
+    )
     x = int((chroma * hue_cos(hue)).sum(dtype=np.int64))
     y = int((chroma * hue_sin(hue)).sum(dtype=np.int64))
     chroma_sum, saturation_sum, value_sum = (int(a.sum()) for a in (chroma, saturation, value))

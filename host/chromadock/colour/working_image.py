@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +41,9 @@ def working_image(
     whole = height % method.WORKING_HEIGHT == 0 and width % method.WORKING_WIDTH == 0
     small = height <= method.MAX_FRAME_HEIGHT and width <= method.MAX_FRAME_WIDTH
     sums, count = _equal_boxes(pixels) if whole and small else _unequal_boxes(pixels)
-    full = np.asarray(scale, dtype=np.int64) * count
-    return np.asarray((510 * sums + full) // (2 * full), np.uint8)
+    full = np.asarray(scale, dtype=np.float64) * count
+    # Exact: no quotient of integers below 2^53 rounds up to a whole number.
+    return np.asarray((510 * sums + full) / (2 * full)).astype(np.uint8)
 
 
 def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -48,7 +51,7 @@ def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return np.asarray(cv2.GaussianBlur(image, (3, 3), 0, borderType=cv2.BORDER_REPLICATE), np.uint8)
 
 
-def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """Sums (60, 80, 3) and counts of a frame whose cells all have the same whole size.
 
     Exact, and four times as fast as the other: the 64 rows at most of a cell of the largest
@@ -58,21 +61,27 @@ def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[
     columns = pixels.shape[1] // method.WORKING_WIDTH
     stacked = pixels.reshape(method.WORKING_HEIGHT, rows, -1)
     upright = np.add.reduce(stacked, axis=1, dtype=np.uint16)
-    cells = upright.reshape(-1, 3 * columns).astype(np.float32)
-    by_channel = np.tile(np.eye(3, dtype=np.float32), (columns, 1))
-    sums = (cells @ by_channel).astype(np.int64)
+    # One product a row of cells: a single large one would start the library's threads.
+    cells = upright.reshape(method.WORKING_HEIGHT, -1, 3 * columns).astype(np.float32)
+    sums = cells @ _by_channel(columns)
     shape = (method.WORKING_HEIGHT, method.WORKING_WIDTH, 3)
-    return sums.reshape(shape), np.array(rows * columns, np.int64)
+    return sums.reshape(shape).astype(np.float64), np.array(rows * columns)
 
 
-def _unequal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+@cache
+def _by_channel(columns: int) -> NDArray[np.float32]:
+    """(3 columns, 3): adds up the pixels of a row, each channel to itself."""
+    return np.tile(np.eye(3, dtype=np.float32), (columns, 1))
+
+
+def _unequal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """Sums (60, 80, 3) and counts (60, 80, 1) for any size."""
     y0, y1 = _boxes(pixels.shape[0], method.WORKING_HEIGHT)
     x0, x1 = _boxes(pixels.shape[1], method.WORKING_WIDTH)
     # Sums may wrap in 32 bits; their differences, the boxes, do not.
     integral = cv2.integral(pixels).view(np.uint32)
     top, bottom = integral[y0], integral[y1]
-    sums = (bottom[:, x1] - bottom[:, x0] - top[:, x1] + top[:, x0]).astype(np.int64)
+    sums = (bottom[:, x1] - bottom[:, x0] - top[:, x1] + top[:, x0]).astype(np.float64)
     return sums, ((y1 - y0)[:, None] * (x1 - x0)[None, :])[..., None]
 
 

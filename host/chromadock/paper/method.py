@@ -2,30 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.detection import Blob, Point, Pose
+from chromadock.colour.hsv import rgb_from_hsv
+from chromadock.colour.marker import observed_colour
+from chromadock.detection import Blob
 from chromadock.dock import DockGeometry
+from chromadock.look import Found, Look
 from chromadock.paper.blobs import find_spots
 from chromadock.paper.constellation import CORNERS, Rectangle, corners, four_blobs, right_triangles
 from chromadock.paper.mask import colour_mask, foreground
 from chromadock.paper.peaks import Spot
 from chromadock.pose import epnp
 from chromadock.stopwatch import Stopwatch
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """What the method made of one frame; markers and pose are None if no dock was found."""
-
-    passed_fraction: float
-    blobs: tuple[Blob, ...]
-    markers: dict[str, Point] | None
-    pose: Pose | None
 
 
 class PaperMethod:
@@ -36,18 +27,13 @@ class PaperMethod:
         self._rectangle = Rectangle.of(dock)
         self.mask: NDArray[np.uint8] = np.zeros((0, 0), np.uint8)
 
-    def find(
-        self,
-        frame_bgr: NDArray[np.uint8],
-        background_bin: int,
-        observed: tuple[int, int, int],
-        camera: CameraModel,
-        watch: Stopwatch,
-    ) -> Found:
-        """Look for the dock in a (H, W, 3) uint8 BGR frame."""
-        self.mask = colour_mask(frame_bgr, observed) & foreground(frame_bgr, background_bin)
+    def find(self, look: Look, watch: Stopwatch) -> Found:
+        """Look for the dock in one frame, everywhere: no prior is used."""
+        observed = observed_colour(look.background.rgb, rgb_from_hsv(look.hue, 255, 255))
+        mask = colour_mask(look.frame_bgr, observed)
+        self.mask = mask & foreground(look.frame_bgr, look.background.bin)
         watch.lap("mask")
-        return self.find_in_mask(self.mask, camera, watch)
+        return self.find_in_mask(self.mask, look.camera, watch)
 
     def find_in_mask(self, mask: NDArray[np.uint8], camera: CameraModel, watch: Stopwatch) -> Found:
         """Look for the dock in a (H, W) uint8 mask, 0 or 255, whatever filter it came from."""
@@ -72,6 +58,7 @@ class PaperMethod:
                 for name, i in zip(self._dock.names, indices, strict=True)
             }
         return Found(
+            state="not_found" if pose is None else "found",
             passed_fraction=float(np.count_nonzero(mask)) / mask.size,
             blobs=_blobs(spots, set(np.argwhere(np.isfinite(triangles)).ravel().tolist())),
             markers=markers,

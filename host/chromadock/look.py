@@ -1,0 +1,67 @@
+"""What a method of finding the dock is given, and what it gives back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.camera import CameraModel
+from chromadock.colour.background import BackgroundColour
+from chromadock.detection import Blob, Point, Pose
+from chromadock.pose import Estimate
+from chromadock.stopwatch import Stopwatch
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Look:
+    """One frame, and what is known before it is searched.
+
+    ``frame_bgr`` (H, W, 3) uint8 BGR; ``background``: the water's colour in it; ``hue``
+    0..1535: of the markers as they should shine now.  ``priors``: where a track expects the
+    dock in this frame, each with its information; ``everywhere``: also search where no prior
+    has it; ``incomplete``: where no whole dock is found there, one with a marker out will do.
+    """
+
+    frame_bgr: NDArray[np.uint8]
+    background: BackgroundColour
+    hue: int
+    camera: CameraModel
+    priors: tuple[Estimate, ...] = ()
+    everywhere: bool = True
+    incomplete: bool = False
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Found:
+    """What a method made of one frame; markers and pose are None if no dock was found.
+
+    ``state`` is ``found``, ``partial`` (all markers but one, about where a prior has them or
+    where ``incomplete`` allows it) or ``not_found``; ``passed_fraction`` the share of the frame
+    that stands out in the markers' colour; ``pose`` the better one, with its alternative.
+    ``estimates``: both, with their information, for a track.  ``evidence``: decades by which
+    the dock explains what was seen better than clutter does; None where a method does not
+    weigh it.  ``hue`` 0..1535: of the light that the markers add, as received.
+    """
+
+    state: str
+    passed_fraction: float
+    blobs: tuple[Blob, ...] = ()
+    markers: dict[str, Point] | None = None
+    pose: Pose | None = None
+    estimates: tuple[Estimate, ...] = ()
+    evidence: float | None = None
+    hue: int | None = None
+
+
+class Method(Protocol):
+    """A way to find the dock."""
+
+    @property
+    def mask(self) -> NDArray[np.uint8]:
+        """(H, W): nonzero where the last frame stood out in the markers' colour."""
+
+    def find(self, look: Look, watch: Stopwatch) -> Found:
+        """Look for the dock in one frame."""

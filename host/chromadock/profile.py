@@ -1,0 +1,111 @@
+"""How far a pose's attitude can truly go: the covariance beyond the linear one.
+
+From afar a plane's tilt shows in its places only by second order, so that the curvature of
+chi-square at its minimum says little about where the true tilt may be.  The profile does:
+chi-square along a turn with all else refitted (Venzon and Moolgavkar, Applied Statistics 37
+(1988) 87).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.pose import Estimate, Sighting
+
+_WELL_KNOWN_RAD = 0.015
+"""Standard deviation of a turn below which second order is far below first."""
+
+# Turns that are tried, in linear standard deviations, and the most.
+_TURNS = np.array([-8.0, -4.0, -2.0, 2.0, 4.0, 8.0])
+_MOST_TURN_RAD = 0.7
+_TILTS = 2  # a plane's; the third turn, roll, is seen directly
+_ROUNDS = 2  # of refitting
+_STIFFNESS, _DAMPING = 1e6, 1e-10  # of the turn that is held and of all: traces of the information
+_REGION = 12.6  # chi-square with six degrees of freedom, 95%: farther turns do not count
+_LEAST_RISE = 4.0  # two standard deviations: what rises less says no more than that it may be true
+
+
+def widened(sighting: Sighting, estimate: Estimate) -> Estimate:
+    """The estimate with an information that admits every attitude which the markers do.
+
+    Unchanged where the markers tell the attitude well.
+    """
+    information = estimate.information
+    by_turn = np.linalg.solve(information[:3, :3], information[:3, 3:])
+    turns = information[3:, 3:] - information[3:, :3] @ by_turn
+    steepness, axes = np.linalg.eigh(turns)
+    sigmas = 1 / np.sqrt(np.maximum(steepness[:_TILTS], 1e-12))
+    if not sigmas[0] >= _WELL_KNOWN_RAD:
+        return estimate
+    angles = np.minimum(sigmas[:, None] * _TURNS, _MOST_TURN_RAD).ravel()
+    along = np.repeat(axes.T[:_TILTS], _TURNS.size, axis=0)
+    steps, chi_square = _profile(sighting, estimate, along, angles)
+    rise = np.maximum(chi_square - estimate.chi_square, _LEAST_RISE)
+    covariance = estimate.covariance
+    for step, allowed in zip(steps[rise < _REGION], rise[rise < _REGION], strict=True):
+        now = float(step @ np.linalg.solve(covariance, step))
+        if now > allowed:
+            # By Sherman and Morrison the step's distance becomes what is allowed.
+            covariance = covariance + (1 / allowed - 1 / now) * np.outer(step, step)
+    return replace(estimate, information=np.asarray(np.linalg.inv(covariance), np.float64))
+
+
+def _profile(
+    sighting: Sighting,
+    estimate: Estimate,
+    axes: NDArray[np.float64],
+    angles: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Steps (M, 6) away and chi-square (M,) after turns by ``angles`` (M,) about ``axes``
+    (M, 3), units, all else refitted."""
+    R = _rotations(angles[:, None] * axes) @ estimate.R
+    t = np.tile(estimate.t, (len(angles), 1))
+    # Along the axis a refit must not turn: there it is held as by a very good measurement.
+    held = np.zeros((len(angles), 6, 6))
+    held[:, 3:, 3:] = axes[:, :, None] * axes[:, None, :]
+    for _ in range(_ROUNDS):
+        error, jacobian = _errors(sighting, R, t)
+        normal = jacobian.transpose(0, 2, 1) @ jacobian
+        trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
+        gradient = jacobian.transpose(0, 2, 1) @ error[..., None]
+        damped = normal + trace * (_STIFFNESS * held + _DAMPING * np.eye(6))
+        step = -np.linalg.solve(damped, gradient)[..., 0]
+        t = t + step[:, :3]
+        R = _rotations(step[:, 3:]) @ R
+    error, _ = _errors(sighting, R, t)
+    turned = [cv2.Rodrigues(r @ estimate.R.T)[0].ravel() for r in R]
+    return np.column_stack([t - estimate.t, turned]), (error**2).sum(axis=1)
+
+
+def _errors(
+    sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Errors (M, 2N) in standard deviations and their derivatives (M, 2N, 6) at M poses."""
+    count, zero = len(R), np.zeros(3)
+    arms = np.einsum("mij,nj->mni", R, sighting.points_dock)
+    seen = arms + t[:, None]
+    seen[..., 2] = np.maximum(seen[..., 2], 1e-3)
+    camera = sighting.camera
+    pixels, derivatives = cv2.projectPoints(
+        seen.reshape(-1, 3), zero, zero, camera.matrix, camera.distortion
+    )
+    by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(count, -1, 2, 3)
+    by_turn = np.cross(arms[:, :, None, :], by_place)
+    both = np.concatenate([by_place, by_turn], axis=3) / sighting.sigma_px[:, None, None]
+    off = (np.asarray(pixels).reshape(count, -1, 2) - sighting.pixels) / sighting.sigma_px[:, None]
+    return off.reshape(count, -1), both.reshape(count, -1, 6)
+
+
+def _rotations(turns: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(M, 3, 3) rotations by (M, 3) turns: Rodrigues' formula."""
+    angle = np.linalg.norm(turns, axis=1)[:, None, None] + 1e-12
+    x, y, z = turns.T
+    zero = np.zeros_like(x)
+    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
+    by_sine = np.sin(angle) / angle * cross
+    by_cosine = (1 - np.cos(angle)) / angle**2 * (cross @ cross)
+    return np.asarray(np.eye(3) + by_sine + by_cosine)

@@ -1,0 +1,57 @@
+"""The dock with one marker out, where no pose is expected.
+
+Each way to leave a marker out is a dock of its own, searched for as the whole one is; that it
+happens, and to which marker, has its probability in the evidence, so the bound on false alarms
+holds as it does for whole docks.  Three markers say less than four: near the bound at best.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.camera import CameraModel
+from chromadock.robust.guided import HIDDEN, MIN_MARKERS, Guess
+from chromadock.robust.peaks import Peaks
+from chromadock.robust.search import Search
+from chromadock.robust.shape import ShapeModel, ideal
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Part:
+    """``markers`` (n - 1,) of the dock, and their shape."""
+
+    markers: NDArray[np.intp]
+    model: ShapeModel
+
+
+class Incomplete:
+    """Searches for (n, 3) markers but one; ``area`` of the frame in square ideal pixels."""
+
+    def __init__(self, points: NDArray[np.float64], camera: CameraModel, area: float) -> None:
+        self._camera, self._area = camera, area
+        count = len(points)
+        self._parts: list[_Part] = []
+        if count > MIN_MARKERS:
+            for left_out in range(count):
+                markers = np.delete(np.arange(count), left_out)
+                self._parts.append(_Part(markers, ShapeModel.learn(points[markers], camera)))
+        self._searches: dict[int, list[Search]] = {}
+
+    def find(self, cell: int, peaks: Peaks, sigma_px: float, least: float) -> Guess | None:
+        """The best set at one scale, if it has an evidence of ``least``."""
+        if not self._parts or len(peaks.snr) < len(self._parts) - 1:
+            return None
+        if cell not in self._searches:
+            self._searches[cell] = [Search(p.model, sigma_px, self._area) for p in self._parts]
+        rarely = float(np.log(HIDDEN / len(self._parts)))
+        places = ideal(peaks.xy, self._camera)
+        best: Guess | None = None
+        for part, search in zip(self._parts, self._searches[cell], strict=True):
+            found = search.find(places, peaks.snr, least - rarely)
+            if len(found.evidence) and (best is None or found.evidence[0] + rarely > best.evidence):
+                evidence = float(found.evidence[0]) + rarely
+                best = Guess(part.markers, found.members[0], evidence)
+        return best

@@ -1,0 +1,129 @@
+"""Places in a response that look like lamps: round, alone, adding light and no colour less."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.robust.response import FINEST_CELL, Response, Scale
+
+MIN_SNR = 3.0
+"""At the finest scale.  Below it noise alone has so many peaks that no constellation could
+stand out.  As much more at a coarser scale as its cells are wider: what fills them is near."""
+
+MAX_PEAKS = 56
+"""The strongest are kept, so that any frame takes bounded time.  Of docks whose markers are
+all among a hundred, one in a hundred is lost."""
+
+# A lamp between four cells has half its signal to noise in each; noise would seldom add more.
+_CELL_SHARE = 0.7
+# Looked at closely, of all that stand out.
+_MAX_SUMMITS = 3 * MAX_PEAKS
+# Four times determinant over squared trace of the Hessian: 1 for a round top, 0 on a ridge.
+# Markers that touch half a neighbour stay above a third; struts and edges do not.
+_MIN_ROUNDNESS = 0.35
+# A pole goes on to both sides of its peaks: the weaker side over the peak.  Neighbouring
+# markers stand on one side only; of true markers at 4 m one in a hundred has more.
+_MAX_RIDGE = 0.7
+# A lamp takes light away from no channel that it shines in; from others its dark holder may.
+# What is behind it is taken to be as dark as the second darkest of eight places about: a buoy
+# beside it may be brighter, and one place may be a dark edge.  Standard deviations of noise
+# that are let pass.
+_BEHIND = 1
+_MOST_MISSING = 3.0
+
+# Rings that tell ridges, in cells; eight directions, those opposite four apart.
+_DOWN = np.array([0, 1, 1, 1, 0, -1, -1, -1])
+_ACROSS = np.array([1, 1, 0, -1, -1, -1, 0, 1])
+_RADII = (2, 3)
+_BORDER = max(_RADII)
+_SQUARE = np.ones((3, 3), np.uint8)
+
+
+@dataclass(frozen=True, slots=True)
+class Peaks:
+    """Strongest first.
+
+    ``xy`` (N, 2) float64: pixels of the frame.  ``snr`` (N,) float64: signal to noise of the
+    brightest 2 x 2 cells about each: wherever in a cell a lamp falls, they catch its light.
+    ``noise`` (N,) float64: standard deviation of the filtered light of cells thereabouts.
+    """
+
+    xy: NDArray[np.float64]
+    snr: NDArray[np.float64]
+    noise: NDArray[np.float64]
+
+
+def find_peaks(response: Response, scale: Scale) -> Peaks:
+    """Local maxima of one scale that a lamp may have made, MAX_PEAKS at most."""
+    least = MIN_SNR * scale.cell / FINEST_CELL
+    highest = np.asarray(cv2.dilate(scale.snr, _SQUARE))
+    summits = (scale.snr > least * _CELL_SHARE) & (scale.snr >= highest)
+    # One value in from the border, so that a peak has neighbours on all sides.
+    summits[[0, -1]] = summits[:, [0, -1]] = False
+    rows, columns = np.divmod(np.flatnonzero(summits), summits.shape[1])
+    padded = cv2.copyMakeBorder(scale.snr, *(_BORDER,) * 4, cv2.BORDER_REPLICATE)
+    values, stride = padded.ravel(), padded.shape[1]
+    at = (rows + _BORDER) * stride + columns + _BORDER
+    near, centre = values[at[:, None] + _ring(stride, 1)], values[at]
+    snr = _brightest(centre, near)
+    order = np.argsort(-snr, kind="stable")[:_MAX_SUMMITS]
+    order = order[snr[order] >= least]
+    if not len(order):
+        return Peaks(np.empty((0, 2)), np.empty(0), np.empty(0))
+    at, near, centre = at[order], near[order], centre[order]
+
+    shift, roundness = _paraboloid(centre, near)
+    sides = values[at[:, None, None] + np.stack([_ring(stride, r) for r in _RADII])]
+    ridge = np.minimum(sides[..., :4], sides[..., 4:]).max(axis=(1, 2)) / centre
+    kept = np.flatnonzero((roundness > _MIN_ROUNDNESS) & (ridge < _MAX_RIDGE))
+    row, column = rows[order[kept]], columns[order[kept]]
+    added = gained(scale.light, row, column)
+    per_channel = np.sqrt(np.diag(response.covariance))
+    good = (added > -_MOST_MISSING * per_channel)[:, response.shining].all(axis=1)
+    true = np.flatnonzero(good)[:MAX_PEAKS]
+    kept, row, column = kept[true], row[true], column[true]
+    cells = np.column_stack([column, row]) + shift[kept]
+    noise = np.asarray(scale.excess[row, column] / centre[kept], np.float64)
+    xy = (cells + 0.5) * scale.cell - 0.5
+    return Peaks(np.asarray(xy, np.float64), snr[order[kept]].astype(np.float64), noise)
+
+
+def gained(
+    light: NDArray[np.float32], row: NDArray[np.intp], column: NDArray[np.intp]
+) -> NDArray[np.float32]:
+    """Light (N, 3) of cells beyond what is taken to be behind them, of (h, w, 3) light."""
+    height, width = light.shape[:2]
+    y = np.clip(row[:, None] + _BORDER * _DOWN, 0, height - 1)
+    x = np.clip(column[:, None] + _BORDER * _ACROSS, 0, width - 1)
+    around = np.sort(light[y, x], axis=1)
+    return np.asarray(light[row, column] - around[:, _BEHIND], np.float32)
+
+
+def _ring(stride: int, radius: int) -> NDArray[np.intp]:
+    """Flat offsets of the eight directions."""
+    return np.asarray(radius * (_DOWN * stride + _ACROSS))
+
+
+def _brightest(centre: NDArray[np.float32], near: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Signal to noise of the brightest 2 x 2 values of 3 x 3; ``near`` (N, 8) are the ring."""
+    quadrants = near[:, ::2] + near[:, 1::2] + near[:, [2, 4, 6, 0]]
+    return np.asarray((centre + np.maximum(quadrants.max(axis=1), 0)) / 2, np.float32)
+
+
+def _paraboloid(
+    centre: NDArray[np.float32], near: NDArray[np.float32]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Of the top through 3 x 3 values: x, y (N, 2) within half a cell, and roundness (N,).
+
+    ``near`` (N, 8) are the ring of radius 1.
+    """
+    right, down, left, up = near[:, 0], near[:, 2], near[:, 4], near[:, 6]
+    xx, yy = 2 * centre - left - right, 2 * centre - up - down
+    xy = (near[:, 3] + near[:, 7] - near[:, 1] - near[:, 5]) / 4
+    roundness = 4 * (xx * yy - xy * xy) / np.maximum((xx + yy) ** 2, 1e-12)
+    slope, bend = np.stack([right - left, down - up], 1), np.stack([xx, yy], 1)
+    return np.clip(slope / np.maximum(2 * bend, 1e-6), -0.5, 0.5), roundness

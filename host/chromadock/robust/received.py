@@ -1,0 +1,41 @@
+"""What hue markers shine in, as this camera receives it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock import method
+from chromadock.colour.hsv import rgb_from_hsv
+from chromadock.robust.peaks import gained
+from chromadock.robust.response import Response, linear
+
+_STEP = 16  # of 1536: much finer than attenuation and crosstalk let a hue be known
+_HUES = np.arange(0, method.HUE_RANGE, _STEP)
+_PURE = linear(np.array([[rgb_from_hsv(int(h), 255, 255)[::-1] for h in _HUES]], np.uint8))[0]
+
+# Cells about a marker whose light is a lamp's: 5 x 5.
+_NEAR = np.mgrid[-2:3, -2:3].reshape(2, 1, -1)
+_CLIPPED = 0.7  # of full scale: the mean of a cell with a clipped pixel is below 1
+
+
+def received_hue(response: Response, xy: NDArray[np.float64]) -> int:
+    """Hue 0..1535 whose matched filter answers most to the light that markers at ``xy`` add.
+
+    Parameters
+    ----------
+    xy : (n, 2) pixels.
+
+    A clipped core has lost its hue, so the halo beside it is looked at.  The water between and
+    the camera's crosstalk turn the hue by some tens of degrees; see docs/robust.md.
+    """
+    finest = response.scales[0]
+    height, width = finest.snr.shape
+    across, down = np.floor((xy + 0.5) / finest.cell).astype(np.intp).T
+    column = np.clip(across[:, None] + _NEAR[0], 0, width - 1)
+    row = np.clip(down[:, None] + _NEAR[1], 0, height - 1)
+    added = gained(finest.light, row.ravel(), column.ravel())
+    whole = finest.light[row, column].reshape(-1, 3).max(axis=1) < _CLIPPED
+    whitened = np.linalg.solve(response.covariance, _PURE.T.astype(np.float64))
+    answer = (added[whole].sum(axis=0) @ whitened) / np.sqrt((_PURE.T * whitened).sum(axis=0))
+    return int(_HUES[answer.argmax()])

@@ -1,0 +1,166 @@
+"""How much a place shines in the markers' colour, in units of the frame's own noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.colour.hsv import rgb_from_hsv
+
+GAMMA = 2.2
+"""Of cameras whose pictures are meant for screens (sRGB is within 1% of it)."""
+
+FINEST_CELL = 4
+"""Pixels: the lens, the halo and JPEG spread a far marker's light about as wide, so that a
+finer grid only adds noise."""
+
+COARSEST_CELL_RAD = 1 / 64
+"""As wide as a marker's glare looks from where the dock just fits into the picture."""
+
+SURROUND_CELL = 32
+"""Pixels: water changes little over it, and no marker fills it."""
+
+MIN_SIDE = 64
+"""Pixels: two surrounds."""
+
+_Number = TypeVar("_Number", np.uint8, np.float32)
+
+_LINEAR = ((np.arange(256) / 255) ** GAMMA).astype(np.float32)
+
+# Neighbours at this lag, in finest cells, share neither a marker nor JPEG's blocks of 8 pixels.
+_LAG = 2
+# Rows that the noise is measured on: one in so many; 2,300 cells fix six numbers to 3%.
+_ROW_STEP = 8
+# Differences beyond so many times the mean are edges, not noise: of noise one in a hundred.
+_EDGE = 2.5
+# Variance of linear light that 8 bits leave in dark water: (2.2 * 0.05^1.2 / 255)^2 / 12.
+_QUANTUM = 5e-9
+# A channel is a lamp's own from this share of its brightest on.
+_SHINING = 0.3
+# The local noise is the mean of so many cells squared, ...
+_BLOCK = 8
+# ... at least that of almost all the frame, at most what markers themselves may raise it to.
+_LEAST, _MOST = 0.9, 2.5
+# Mean absolute value to standard deviation of a normal variable.
+_NORMAL = float(np.sqrt(np.pi / 2))
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """The frame seen through square cells of ``cell`` pixels.
+
+    ``light`` (h, w, 3) float32: linear BGR, 0..1.  ``excess`` (h, w) float32: the filtered
+    light less that of the surround.  ``snr`` (h, w) float32: the same in standard deviations
+    of its local fluctuation.
+    """
+
+    cell: int
+    light: NDArray[np.float32]
+    excess: NDArray[np.float32]
+    snr: NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """What the matched filter makes of a frame.
+
+    ``weights`` (1, 3) float32, BGR: the filter, such that finest cells fluctuate by about 1;
+    ``covariance`` (3, 3), BGR: of their fluctuation, in linear light;
+    ``shining`` (3,): the channels, BGR, that the lamps shine in.
+    """
+
+    weights: NDArray[np.float32]
+    covariance: NDArray[np.float64]
+    shining: NDArray[np.bool_]
+    scales: tuple[Scale, ...]
+
+
+def linear(image: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """8-bit encoded values to linear light, 0..1."""
+    return np.asarray(cv2.LUT(image, _LINEAR), np.float32)
+
+
+def filtered(light: NDArray[np.float32], weights: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(h, w, 3) light through (1, 3) weights: (h, w)."""
+    return np.asarray(cv2.transform(light, weights), np.float32)
+
+
+def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response:
+    """Filter a frame for lamps of ``hue`` 0..1535.
+
+    Parameters
+    ----------
+    frame_bgr : (H, W, 3) uint8, at least MIN_SIDE each way.
+    focal_px : focal length; sets the coarsest cells.
+    """
+    light = linear(_halved(_halved(frame_bgr)))
+    covariance = _fluctuation(light)
+    signature = _LINEAR[list(rgb_from_hsv(hue, 255, 255))[::-1]].astype(np.float64)
+    weights = _matched_filter(covariance, signature)
+    cells = [FINEST_CELL]
+    while 2 * cells[-1] <= min(focal_px * COARSEST_CELL_RAD, SURROUND_CELL / 2):
+        cells.append(2 * cells[-1])
+    lights = [light]
+    for _ in cells[1:]:
+        lights.append(_halved(lights[-1]))
+    centres = [filtered(light, weights) for light in lights]
+    surround = centres[-1]
+    for _ in range((SURROUND_CELL // cells[-1]).bit_length() - 1):
+        surround = _halved(surround)
+    scales = tuple(
+        Scale(cell, light, *_against(centre, surround))
+        for cell, light, centre in zip(cells, lights, centres, strict=True)
+    )
+    return Response(weights, covariance, signature > _SHINING, scales)
+
+
+def _halved(image: NDArray[_Number]) -> NDArray[_Number]:
+    """Means of 2 x 2 pixels; an odd row or column is spread over the others."""
+    size = (image.shape[1] // 2, image.shape[0] // 2)
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), image.dtype)
+
+
+def _fluctuation(light: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Covariance (3, 3) of the channels of single cells about the light nearby.
+
+    Second differences along rows (slopes cancel), without the large ones: those are edges.
+    """
+    rows = light[_ROW_STEP // 2 :: _ROW_STEP]
+    bent = rows[:, 2 * _LAG :] + rows[:, : -2 * _LAG] - 2 * rows[:, _LAG:-_LAG]
+    bent = bent.reshape(-1, 3)
+    size = np.abs(bent) @ np.ones(3, np.float32)
+    kept = size <= _EDGE * size.mean()
+    product = bent.T @ (bent * kept[:, None])
+    # A second difference of independent values has 1 + 1 + 4 times their variance.
+    variances = product.astype(np.float64) / (6 * np.count_nonzero(kept))
+    return np.asarray(variances + _QUANTUM * np.eye(3))
+
+
+def _matched_filter(
+    covariance: NDArray[np.float64], signature: NDArray[np.float64]
+) -> NDArray[np.float32]:
+    """Weights S^-1 s / sqrt(s' S^-1 s): most signal of colour s in noise of covariance S.
+
+    North, Proc. IEEE 51 (1963) 1016; in colour space it takes the water's own hue out.
+    """
+    whitened = np.linalg.solve(covariance, signature)
+    return (whitened / np.sqrt(signature @ whitened)).astype(np.float32)[None]
+
+
+def _against(
+    centre: NDArray[np.float32], surround: NDArray[np.float32]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Centre less surround, and that over its local fluctuation."""
+    height, width = centre.shape
+    excess = centre - np.asarray(cv2.resize(surround, (width, height)), np.float32)
+    blocks = (max(1, width // _BLOCK), max(1, height // _BLOCK))
+    noise = cv2.resize(np.abs(excess), blocks, interpolation=cv2.INTER_AREA)
+    middle = noise.size // 2
+    typical = max(float(np.partition(noise, middle, axis=None)[middle]), 1e-3)
+    noise = np.clip(noise, _LEAST * typical, _MOST * typical)
+    noise = cv2.resize(cv2.GaussianBlur(noise, (0, 0), 1.5), (width, height))
+    return excess, np.asarray(cv2.divide(excess, noise, scale=1 / _NORMAL), np.float32)

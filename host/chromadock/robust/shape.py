@@ -1,0 +1,194 @@
+"""What a dock looks like to a camera that may hold it at any likely pose.
+
+A constellation's shape is what is left of it when place, size and roll are taken away: with
+two markers p and q as a base, marker m has the complex coordinate
+``b_m = (z_m - z_p) / (z_q - z_p)`` (Bookstein, Statistical Science 1 (1986) 181).  Over likely
+poses shapes are close to a normal distribution, if sizes are looked at apart; it is learnt
+from simulated views and so holds for docks of any geometry.
+
+Places are complex numbers x + iy in ideal pixels: focal length times tangent, no distortion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.camera import CameraModel
+from chromadock.robust.evidence import placed_along
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+ATTITUDE_RAD = np.radians([10.0, 20.0, 10.0])
+"""Standard deviations of pitch, yaw and roll between dock and camera: a vehicle on its way
+to the dock swims level and about along its axis."""
+
+MIN_SPACING_PX = 8.0
+"""Of the closest markers of the farthest dock of interest: cells that do not touch."""
+
+_VIEWS = 12_000  # half of them are whole, and a fifth of those falls in each of ...
+_SPANS = 5  # ... as many spans of size: covariances to 4%
+_TAIL = 0.005  # of the views may lie outside a window, at each end
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Where displacements between two markers point: lengths, direction (a unit), spread."""
+
+    shortest: float
+    longest: float
+    direction: complex
+    half_angle: float
+
+    @classmethod
+    def of(cls, displacements: Complex) -> Window:
+        """The window that holds almost all of (N,) displacements."""
+        mean = displacements.mean()
+        direction = complex(mean / abs(mean))
+        turned = np.abs(np.angle(displacements / direction))
+        shortest, longest = np.quantile(np.abs(displacements), [_TAIL, 1 - _TAIL])
+        half_angle = min(float(np.quantile(turned, 1 - _TAIL)), 1.4)
+        return cls(float(shortest), float(longest), direction, half_angle)
+
+    def holds(self, displacements: Complex, distances: Real, slack: float) -> NDArray[np.bool_]:
+        """Which displacements, known to ``slack``, lie inside."""
+        turned = displacements * self.direction.conjugate()
+        wide = np.abs(turned.imag) < np.tan(self.half_angle) * turned.real + slack
+        long = (distances > self.shortest - slack) & (distances < self.longest + slack)
+        return np.asarray(wide & long)
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeModel:
+    """Distribution of the views of n markers.
+
+    ``order`` (n,): which markers p, q, the third, ... are; ``along`` (n,): see
+    ``evidence.placed_along``, in that order.  ``base`` and ``side``: windows of
+    q and of the third as seen from p.  ``roll_rad``: standard deviation of the base's
+    direction.  ``edges`` (S-1,): sizes |z_q - z_p| between the spans.  ``mean`` (S, 2n-4) and
+    ``covariance`` (S, 2n-4, 2n-4): of Re b_3, Im b_3, Re b_4, ... in each.
+    """
+
+    order: tuple[int, ...]
+    along: Real
+    base: Window
+    side: Window
+    roll_rad: float
+    edges: Real
+    mean: Real
+    covariance: Real
+
+    @classmethod
+    def learn(cls, points: Real, camera: CameraModel) -> ShapeModel:
+        """Simulate views of (n, 3) markers; the same for the same markers and camera."""
+        order = _order(points)
+        z = _views(points[list(order)], camera)
+        base, side = z[:, 1] - z[:, 0], z[:, 2] - z[:, 0]
+        shape = stacked((z[:, 2:] - z[:, :1]) / base[:, None])
+        edges = np.quantile(np.abs(base), np.arange(1, _SPANS) / _SPANS)
+        span = np.searchsorted(edges, np.abs(base))
+        window = Window.of(base)
+        return cls(
+            order=order,
+            along=placed_along(points)[list(order)],
+            base=window,
+            side=Window.of(side),
+            roll_rad=float(np.angle(base / window.direction).std()),
+            edges=edges,
+            mean=np.array([shape[span == s].mean(axis=0) for s in range(_SPANS)]),
+            covariance=np.array([np.cov(shape[span == s].T) for s in range(_SPANS)]),
+        )
+
+    def log_base(self, base: Complex) -> Real:
+        """Log density of (N,) bases, a square pixel: even in log size, normal in direction."""
+        angle = np.angle(base / self.base.direction) / self.roll_rad
+        spread = np.log(self.base.longest / self.base.shortest) * self.roll_rad
+        return np.asarray(
+            -0.5 * angle**2 - np.log(spread * np.sqrt(2 * np.pi)) - 2 * np.log(np.abs(base))
+        )
+
+    def log_shape(self, z: Complex, sigma_px: Real) -> float:
+        """Log density of n markers at ``z`` (n,), known to (n,) ``sigma_px``, given their base.
+
+        In square pixels to the power n - 2; ``z`` in the shape's order.
+        """
+        base = z[1] - z[0]
+        size = float(abs(base))
+        b = (z[2:] - z[0]) / base
+        span = int(np.searchsorted(self.edges, size))
+        # b moves by (dz_m - (1 - b) dz_p - b dz_q) / base.
+        known = np.diag(sigma_px[2:] ** 2) + 0j
+        known += np.outer(1 - b, np.conj(1 - b)) * sigma_px[0] ** 2
+        known += np.outer(b, np.conj(b)) * sigma_px[1] ** 2
+        covariance = self.covariance[span].copy()
+        covariance[0::2, 0::2] += known.real / size**2
+        covariance[1::2, 1::2] += known.real / size**2
+        covariance[1::2, 0::2] += known.imag / size**2
+        covariance[0::2, 1::2] -= known.imag / size**2
+        off = stacked(b[None])[0] - self.mean[span]
+        density = -0.5 * off @ np.linalg.solve(covariance, off)
+        density -= 0.5 * np.linalg.slogdet(2 * np.pi * covariance)[1]
+        return float(density - 2 * len(b) * np.log(size))
+
+
+def stacked(values: Complex) -> Real:
+    """(N, m) complex to (N, 2m) real: Re, Im, Re, Im, ..."""
+    return np.ascontiguousarray(values).view(np.float64)
+
+
+def ideal(pixels: Real, camera: CameraModel) -> Complex:
+    """(N, 2) pixels to (N,) places without the lens's distortion."""
+    rays = focal_px(camera) * camera.undistort(pixels)
+    return np.ascontiguousarray(rays).view(np.complex128).ravel()
+
+
+def focal_px(camera: CameraModel) -> float:
+    """Focal length: the geometric mean of both axes'."""
+    return float(np.sqrt(camera.matrix[0, 0] * camera.matrix[1, 1]))
+
+
+def _order(points: Real) -> tuple[int, ...]:
+    """The widest pair, from the end that has the nearer neighbour; then by nearness to it."""
+    apart = np.linalg.norm(points[:, None] - points[None], axis=2)
+    ends = [int(i) for i in np.unravel_index(apart.argmax(), apart.shape)]
+    others = [m for m in range(len(points)) if m not in ends]
+    p = min(ends, key=lambda end: float(apart[end, others].min()))
+    q = ends[1 - ends.index(p)]
+    others.sort(key=lambda m: float(apart[p, m]))
+    return (p, q, *others)
+
+
+def _views(points: Real, camera: CameraModel) -> Complex:
+    """(V, n) places of the markers in views that the camera sees whole."""
+    rng = np.random.default_rng(0)
+    corners = camera.undistort([(0, 0), (camera.width - 1, camera.height - 1)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    apart = np.linalg.norm(points[:, None] - points[None], axis=2)
+    nearest = float(apart.max() / np.linalg.norm(high - low))
+    farthest = focal_px(camera) * float(apart[apart > 0].min()) / MIN_SPACING_PX
+    # Even in log range; a camera too coarse for this dock still gets views at twice the nearest.
+    ranges = nearest * max(farthest / nearest, 2.0) ** rng.random(_VIEWS)
+    rays = np.column_stack([rng.uniform(low, high, (_VIEWS, 2)), np.ones(_VIEWS)])
+    centres = rays * (ranges / np.linalg.norm(rays, axis=1))[:, None]
+    R = _rotations(rng.standard_normal((_VIEWS, 3)) * ATTITUDE_RAD)
+    seen = np.einsum("vij,nj->vni", R, points) + centres[:, None]
+    in_front = (seen[..., 2] > 0).all(axis=1)
+    seen = seen[in_front]
+    tangents = seen[..., :2] / seen[..., 2:]
+    whole = ((tangents > low) & (tangents < high)).all(axis=(1, 2))
+    return np.asarray(focal_px(camera) * (tangents[whole] @ np.array([1, 1j])))
+
+
+def _rotations(angles: Real) -> Real:
+    """(V, 3, 3) rotations by (V, 3) angles about x, then y, then z of the turned axes."""
+    product = np.eye(3)
+    for axis in range(3):
+        a, b = (axis + 1) % 3, (axis + 2) % 3
+        turn = np.tile(np.eye(3), (len(angles), 1, 1))
+        cosine, sine = np.cos(angles[:, axis]), np.sin(angles[:, axis])
+        turn[:, a, a], turn[:, a, b], turn[:, b, a], turn[:, b, b] = cosine, -sine, sine, cosine
+        product = product @ turn
+    return product

@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from chromadock import CameraModel, DockGeometry
+from chromadock.pose import Estimate
+from chromadock.robust.guided import guided
+from chromadock.robust.peaks import Peaks
+
+CAMERA = CameraModel.nominal(640, 480)
+POINTS = DockGeometry.default().points
+R, T = np.eye(3), np.array([0.2, -0.1, 3.0])
+SURE = np.diag([1 / 0.05**2] * 2 + [1 / 0.1**2] + [1 / 0.1**2] * 3)
+PRIOR = Estimate(R, T + np.array([0.03, 0.02, 0.05]), 0.0, 0.0, SURE)
+
+
+def peaks(*, shown: list[int], specks: int, seed: int = 0) -> Peaks:
+    """Markers ``shown`` and specks, the strongest first: the markers are all 12."""
+    rng = np.random.default_rng(seed)
+    markers = CAMERA.project(POINTS @ R.T + T)[shown] + rng.normal(0, 0.5, (len(shown), 2))
+    xy = np.concatenate([markers, rng.uniform((0, 0), (640, 480), (specks, 2))])
+    snr = np.concatenate([np.full(len(shown), 12.0), np.sort(rng.uniform(3, 11, specks))[::-1]])
+    return Peaks(xy, snr, np.ones(len(xy)))
+
+
+def test_all_markers_are_taken_where_the_pose_expects_them() -> None:
+    guess = guided(POINTS, PRIOR, peaks(shown=[0, 1, 2, 3], specks=20), 1.0, CAMERA)
+    assert guess is not None
+    assert guess.markers.tolist() == guess.members.tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize("missing", [0, 1, 2, 3])
+def test_three_of_four_are_enough(missing: int) -> None:
+    shown = [m for m in range(4) if m != missing]
+    guess = guided(POINTS, PRIOR, peaks(shown=shown, specks=15), 1.0, CAMERA)
+    assert guess is not None
+    assert guess.markers.tolist() == shown
+    assert guess.members.tolist() == [0, 1, 2]
+    assert guess.evidence > np.log(30)
+
+
+def test_two_of_four_are_not() -> None:
+    assert guided(POINTS, PRIOR, peaks(shown=[0, 3], specks=0), 1.0, CAMERA) is None
+
+
+def test_specks_about_the_expected_places_say_little() -> None:
+    evidence = []
+    for seed in range(40):
+        guess = guided(POINTS, PRIOR, peaks(shown=[], specks=60, seed=seed), 1.0, CAMERA)
+        evidence.append(-np.inf if guess is None else guess.evidence)
+    assert np.mean(np.array(evidence) > np.log(30)) <= 1 / 30 + 0.05
+
+
+def test_the_less_sure_the_pose_the_less_the_same_peaks_say() -> None:
+    seen = peaks(shown=[0, 1, 3], specks=5)
+    vague = Estimate(R, PRIOR.t, 0.0, 0.0, SURE / 9)
+    sure, unsure = (guided(POINTS, p, seen, 1.0, CAMERA) for p in (PRIOR, vague))
+    assert sure is not None and unsure is not None
+    assert sure.evidence > unsure.evidence
+
+
+def test_a_pose_behind_the_camera_expects_nothing() -> None:
+    behind = Estimate(R, -T, 0.0, 0.0, SURE)
+    assert guided(POINTS, behind, peaks(shown=[0, 1, 2, 3], specks=0), 1.0, CAMERA) is None

@@ -1,0 +1,122 @@
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from chromadock.robust.peaks import MAX_PEAKS, find_peaks
+from chromadock.robust.response import Response, filtered, linear, respond
+
+FOCAL_PX = 512.0
+RED = 0  # hue
+
+
+def water(seed: int = 0, shape: tuple[int, int] = (480, 640)) -> np.ndarray:
+    """Blue-green, brighter above, with a camera's noise; channels correlate like water's."""
+    rng = np.random.default_rng(seed)
+    light = np.linspace(1.2, 0.8, shape[0])[:, None, None] * np.array([190.0, 140.0, 40.0])
+    common = rng.normal(0, 2, (*shape, 1)) * np.array([1, 0.8, 0.3])
+    return np.clip(light + common + rng.normal(0, 1.5, (*shape, 3)), 0, 255).astype(np.uint8)
+
+
+def with_lamps(frame: np.ndarray, places: np.ndarray, light: float = 0.5) -> np.ndarray:
+    """Red points blurred by the lens, ``light`` full scales of a pixel each, in linear light."""
+    y, x = np.mgrid[0 : frame.shape[0], 0 : frame.shape[1]]
+    shine = linear(frame).astype(np.float64)
+    for px, py in places:
+        spot = light * np.exp(-0.5 * ((x - px) ** 2 + (y - py) ** 2)) / (2 * np.pi)
+        shine += spot[..., None] * np.array([0.02, 0.08, 1.0])
+    return np.rint(255 * np.clip(shine, 0, 1) ** (1 / 2.2)).astype(np.uint8)
+
+
+def finest(response: Response) -> np.ndarray:
+    """Peaks of the finest scale, (N, 2)."""
+    return find_peaks(response, response.scales[0]).xy
+
+
+def test_signal_to_noise_of_plain_water_is_a_standard_normal() -> None:
+    for scale in respond(water(), RED, FOCAL_PX).scales:
+        assert scale.snr.mean() == pytest.approx(0, abs=0.1)
+        assert scale.snr.std() == pytest.approx(1, abs=0.15)
+        assert np.mean(scale.snr > 2) == pytest.approx(0.023, abs=0.012)
+
+
+def test_no_other_filter_hears_the_markers_colour_better() -> None:
+    frame = water()
+    response = respond(frame, RED, FOCAL_PX)
+    signature = np.array([0.0, 0.0, 1.0])
+    light = response.scales[0].light
+    flat = light - cv2.blur(light, (9, 9))
+
+    def heard(weights: np.ndarray) -> float:
+        return float(signature @ weights / filtered(flat, weights.astype(np.float32)[None]).std())
+
+    best = heard(response.weights[0])
+    rng = np.random.default_rng(1)
+    assert max(heard(w) for w in rng.normal(size=(200, 3))) < 1.03 * best
+    assert heard(signature) < best
+
+
+def test_exposure_does_not_change_what_is_seen() -> None:
+    dark = np.rint(water().astype(float) * 0.5 ** (1 / 2.2)).astype(np.uint8)
+    places = np.array([(200.3, 150.8)])
+    both = [
+        find_peaks(r, r.scales[0]).snr[0]
+        for r in (
+            respond(with_lamps(water(), places, 4), RED, FOCAL_PX),
+            respond(with_lamps(dark, places, 2), RED, FOCAL_PX),
+        )
+    ]
+    assert both[0] == pytest.approx(both[1], rel=0.35)
+
+
+def test_lamps_are_found_to_half_a_cell_wherever_they_are() -> None:
+    rng = np.random.default_rng(2)
+    places = np.array([(x, y) for x in range(40, 620, 60) for y in range(40, 460, 60)], float)
+    places += rng.uniform(-4, 4, places.shape)
+    peaks = find_peaks(
+        (response := respond(with_lamps(water(), places, 3), RED, FOCAL_PX)), response.scales[0]
+    )
+    apart = np.linalg.norm(places[:, None] - peaks.xy[None], axis=2)
+    nearest = apart.argmin(axis=0)[:MAX_PEAKS]
+    assert apart.min(axis=0).max() < 2
+    assert len(set(nearest.tolist())) == len(peaks.snr)
+    # Cells that a lamp falls between share its light; the peaks' strengths hardly tell.
+    assert np.log(peaks.snr).std() < 0.2
+
+
+def test_a_lamp_shines_but_a_pole_a_shadow_and_a_blue_speck_do_not() -> None:
+    frame = water()
+    cv2.line(frame, (300, 40), (308, 440), (150, 110, 120), 5, cv2.LINE_AA)
+    cv2.circle(frame, (450, 300), 5, (100, 60, 20), -1, cv2.LINE_AA)
+    cv2.circle(frame, (520, 120), 3, (255, 200, 40), -1, cv2.LINE_AA)
+    frame = with_lamps(frame, np.array([(120.0, 240.0)]), 6)
+    peaks = finest(respond(frame, RED, FOCAL_PX))
+    # The free end of a pole may look like a lamp; the rest of it does not.
+    assert np.linalg.norm(peaks[:3] - (120, 240), axis=1).min() < 2
+    for thing in ((450, 300), (520, 120)):
+        assert np.linalg.norm(peaks - thing, axis=1).min() > 8
+    on_the_pole = np.abs(peaks[:, 0] - (300 + (peaks[:, 1] - 40) / 50)) < 6
+    assert on_the_pole.sum() <= 4
+
+
+def test_a_frame_full_of_specks_gives_no_more_peaks_than_the_limit() -> None:
+    rng = np.random.default_rng(3)
+    frame = with_lamps(water(), rng.uniform((20, 20), (620, 460), (300, 2)), 3)
+    assert len(finest(respond(frame, RED, FOCAL_PX))) == MAX_PEAKS
+
+
+@pytest.mark.parametrize("shape", [(64, 64), (65, 97), (479, 641), (720, 1280)])
+def test_any_size_will_do(shape: tuple[int, int]) -> None:
+    frame = water(shape=shape)
+    place = np.array([(0.55 * shape[1], 0.45 * shape[0])])
+    response = respond(with_lamps(frame, place, 8), RED, 0.8 * shape[1])
+    assert np.linalg.norm(finest(response)[0] - place[0]) < 3
+
+
+@pytest.mark.parametrize("value", [0, 90, 255])
+def test_a_frame_of_one_value_has_no_peaks(value: int) -> None:
+    frame = np.full((480, 640, 3), value, np.uint8)
+    for scale in (response := respond(frame, RED, FOCAL_PX)).scales:
+        assert np.isfinite(scale.snr).all()
+        assert not len(find_peaks(response, scale).snr)

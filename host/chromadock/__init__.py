@@ -11,5 +11,17 @@ from chromadock.detection import Detection
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
+from chromadock.track.attitude import Attitude
+from chromadock.track.result import Track
+from chromadock.track.tracker import Tracker
 
-__all__ = ["CameraModel", "ChromadockError", "Detection", "Detector", "DockGeometry"]
+__all__ = [
+    "Attitude",
+    "CameraModel",
+    "ChromadockError",
+    "Detection",
+    "Detector",
+    "DockGeometry",
+    "Track",
+    "Tracker",
+]

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from chromadock.pose import Estimate
+    from chromadock.track.result import Track, TrackedPose
 
 RGB = tuple[int, int, int]
 Point = tuple[float, float]
@@ -22,10 +26,15 @@ class Background:
 
 @dataclass(frozen=True, slots=True)
 class Marker:
-    """The colour that the dock's LEDs should show now, a pure colour."""
+    """The colour that the dock's LEDs should show now, a pure colour.
+
+    ``received_deg``: the hue of the light that markers were found to add, None without; it
+    differs by some tens of degrees where both sides agree, and by more where they do not.
+    """
 
     rgb: RGB
     hue_deg: float
+    received_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,22 +56,27 @@ class Pose:
 
     ``t`` in metres; ``q_wxyz`` a unit quaternion that turns dock axes into camera
     axes; ``reprojection_px`` the root mean square distance of the reprojected
-    markers from the measured ones.
+    markers from the measured ones.  ``covariance``: 6 x 6 by rows, of x, y, z, metres, and of
+    turns about the camera's x, y and z axes, radians, as in ROS's PoseWithCovariance; None
+    where a method does not know it.  ``alternative``: the other pose that the markers leave
+    open, if they do.
     """
 
     t: tuple[float, float, float]
     q_wxyz: tuple[float, float, float, float]
     reprojection_px: float
     alternative: Pose | None = None
+    covariance: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Detection:
     """Everything one frame told.  Fields that do not apply are None.
 
-    ``state`` is ``found`` or ``not_found``; ``passed_fraction`` the share of
-    pixels in the colour mask, 0..1; ``markers`` maps the dock's marker names to
-    their pixel; ``timing_ms`` milliseconds by stage, with ``total``.
+    ``state``, ``evidence`` and ``estimates``: see ``look.Found``; ``passed_fraction`` the
+    share of pixels that stand out in the markers' colour, 0..1; ``markers`` maps the dock's
+    marker names to their pixel; ``track`` what all frames so far tell, at this one's time (None
+    where frames are treated alone); ``timing_ms`` milliseconds by stage, with ``total``.
     """
 
     state: str
@@ -73,6 +87,9 @@ class Detection:
     blobs: tuple[Blob, ...] = ()
     markers: dict[str, Point] | None = None
     pose: Pose | None = None
+    evidence: float | None = None
+    estimates: tuple[Estimate, ...] = ()
+    track: Track | None = None
     timing_ms: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -93,6 +110,7 @@ class Detection:
             "marker": {
                 "rgb": list(self.marker.rgb),
                 "hue_deg": _rounded(self.marker.hue_deg, 2),
+                "received_deg": _rounded(self.marker.received_deg, 2),
             },
             "observed": {"rgb": list(self.observed)},
             "passed_fraction": _rounded(self.passed_fraction, 6),
@@ -103,6 +121,8 @@ class Detection:
             if self.markers is None
             else {name: [_rounded(x, 2), _rounded(y, 2)] for name, (x, y) in self.markers.items()},
             "pose": None if self.pose is None else _pose_dict(self.pose),
+            "evidence": _rounded(self.evidence, 2),
+            "track": None if self.track is None else _track_dict(self.track),
             "timing_ms": {stage: _rounded(ms, 2) for stage, ms in self.timing_ms.items()},
         }
 
@@ -112,7 +132,31 @@ def _pose_dict(pose: Pose) -> dict[str, Any]:
         "t": [_rounded(v, 4) for v in pose.t],
         "q_wxyz": [_rounded(v, 6) for v in pose.q_wxyz],
         "reprojection_px": _rounded(pose.reprojection_px, 3),
+        "covariance": None
+        if pose.covariance is None
+        else [_significant(v, 4) for v in pose.covariance],
         "alternative": None if pose.alternative is None else _pose_dict(pose.alternative),
+    }
+
+
+def _track_dict(track: Track) -> dict[str, Any]:
+    velocity, turn_rate = track.velocity, track.turn_rate
+    return {
+        "state": track.state,
+        "pose": None if track.pose is None else _tracked_dict(track.pose),
+        "alternative": None if track.alternative is None else _tracked_dict(track.alternative),
+        "velocity_m_s": None if velocity is None else [_rounded(v, 4) for v in velocity],
+        "turn_rate_rad_s": None if turn_rate is None else [_rounded(v, 4) for v in turn_rate],
+        "age_s": _rounded(track.age_s, 4),
+    }
+
+
+def _tracked_dict(pose: TrackedPose) -> dict[str, Any]:
+    return {
+        "t": [_rounded(v, 4) for v in pose.t],
+        "q_wxyz": [_rounded(v, 6) for v in pose.q_wxyz],
+        "covariance": [_significant(v, 4) for v in pose.covariance],
+        "weight": _rounded(pose.weight, 4),
     }
 
 
@@ -121,3 +165,8 @@ def _rounded(value: float | None, digits: int) -> float | None:
     if value is None or not math.isfinite(value):
         return None
     return round(value, digits)
+
+
+def _significant(value: float, digits: int) -> float | None:
+    """The same for numbers of any size."""
+    return float(f"{value:.{digits}g}") if math.isfinite(value) else None

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,13 +19,26 @@ from chromadock.colour.working_image import smooth, working_image
 from chromadock.detection import Background, Detection, Marker
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
+from chromadock.hue_search import HueSearch
+from chromadock.look import Look, Method
 from chromadock.paper.method import PaperMethod
+from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
+from chromadock.track.attitude import Attitude
+from chromadock.track.result import Track
+from chromadock.track.tracker import Tracker
 
-METHODS = ("paper",)
+_METHODS: dict[str, Callable[[DockGeometry], Method]] = {
+    "robust": RobustMethod,
+    "paper": PaperMethod,
+}
+METHODS = tuple(_METHODS)
 """Ways to find the constellation; ``MAPPINGS`` are those to choose the colour."""
+DEFAULT_METHOD = "robust"
+_TRACKED = frozenset({"robust"})
+"""Methods that weigh their evidence and tell how sure a pose is, which a track needs."""
 
-__all__ = ["MAPPINGS", "METHODS", "Detector"]
+__all__ = ["DEFAULT_METHOD", "MAPPINGS", "METHODS", "Detector"]
 
 
 class Detector:
@@ -37,7 +55,10 @@ class Detector:
     mapping
         One of ``MAPPINGS``; the dock must use the same.
     independent
-        Treat each frame alone: no rolling mean of the marker colour.
+        Treat each frame alone: no rolling mean of the marker colour, no track.
+    tracker
+        With extrinsics or a dock of your own; None takes ``Tracker(dock)`` with method
+        ``robust``, and none with others.
 
     Raises
     ------
@@ -49,37 +70,58 @@ class Detector:
         self,
         camera: CameraModel | None,
         dock: DockGeometry,
-        method: str = "paper",
+        method: str = DEFAULT_METHOD,
         mapping: str = contract.DEFAULT_MAPPING_NAME,
         independent: bool = False,
+        tracker: Tracker | None = None,
     ) -> None:
         _check_name("method", method, METHODS)
         _check_name("mapping", mapping, MAPPINGS)
         self._camera = camera
         self._mapping = mapping
         self._rolling = None if independent else RollingHue()
-        self._method = PaperMethod(dock)
+        self._method = _METHODS[method](dock)
+        self._tracker = None
+        if method in _TRACKED and not independent:
+            self._tracker = tracker or Tracker(dock)
+        self._hues = HueSearch()
 
     @property
     def mask(self) -> NDArray[np.bool_]:
-        """(H, W) bool: the pixels of the last frame that passed the colour mask."""
+        """(H, W) bool: the pixels of the last frame that stand out in the markers' colour."""
         return self._method.mask.astype(np.bool_)
 
-    def process(self, frame_bgr: NDArray[np.uint8], time_s: float) -> Detection:
+    def predicted(self, time_s: float) -> Track | None:
+        """The track run on from the newest frame to a time after it, such as now.
+
+        A frame is processed some time after it was taken; this takes the delay out.  None
+        where nothing is tracked: ``independent``, or a method that cannot.
+        """
+        return None if self._tracker is None else self._tracker.at(time_s)
+
+    def process(
+        self, frame_bgr: NDArray[np.uint8], time_s: float, attitude: Attitude | None = None
+    ) -> Detection:
         """Look for the dock in one frame.
 
         Parameters
         ----------
         frame_bgr : (H, W, 3) uint8, BGR, at most 5120 x 3840.
-        time_s : when it was taken, seconds; any origin, monotonic.
+        time_s : when it was taken, seconds; any origin, monotonic.  The track does not use a
+            frame that is not newer than the last, and starts anew when time goes back by more
+            than a second.
+        attitude : the vehicle's when the frame was taken, where it is known, for the track.
 
         Raises
         ------
         ChromadockError
-            For another shape or type, or a size that the camera is not calibrated for.
+            For another shape or type, a size that the camera is not calibrated for, or a time
+            that is not finite.
         """
         _check_frame(frame_bgr)
-        camera = self._camera or CameraModel.nominal(frame_bgr.shape[1], frame_bgr.shape[0])
+        if not math.isfinite(time_s):
+            raise ChromadockError(f"time_s is {time_s}: give when the frame was taken, in seconds")
+        camera = self._camera or _nominal(frame_bgr.shape[1], frame_bgr.shape[0])
         camera.check_size(frame_bgr.shape)
         watch = Stopwatch()
 
@@ -91,20 +133,43 @@ class Detector:
         observed = observed_colour(background.rgb, marker_rgb)
         watch.lap("colour")
 
-        found = self._method.find(frame_bgr, background.bin, observed, camera, watch)
+        look = Look(frame_bgr, background, hue, camera)
+        track = None
+        if self._tracker is None:
+            found = self._method.find(look, watch)
+        else:
+            plan = self._tracker.plan(time_s)
+            look = replace(
+                look,
+                hue=(hue + self._hues.offset) % contract.HUE_RANGE,
+                priors=plan.priors,
+                everywhere=plan.everywhere,
+                incomplete=plan.incomplete,
+            )
+            found = self._method.find(look, watch)
+            track = self._tracker.update(time_s, plan, found, camera, attitude)
+            self._hues.looked(found.markers is not None, track.pose is not None)
+            watch.lap("track")
         return Detection(
-            state="not_found" if found.pose is None else "found",
+            state=found.state,
             background=Background(
                 background.rgb,
                 degrees(background.hue) if background.meaningful else None,
                 background.confidence / 255,
             ),
-            marker=Marker(marker_rgb, degrees(hue)),
+            marker=Marker(
+                marker_rgb,
+                degrees(hue),
+                None if found.hue is None else degrees(found.hue),
+            ),
             observed=observed,
             passed_fraction=found.passed_fraction,
             blobs=found.blobs,
             markers=found.markers,
             pose=found.pose,
+            evidence=found.evidence,
+            estimates=found.estimates,
+            track=track,
             timing_ms=watch.stop(),
         )
 
@@ -112,6 +177,10 @@ class Detector:
     def _background(frame_bgr: NDArray[np.uint8]) -> BackgroundColour:
         working_bgr = working_image(frame_bgr)
         return background_colour(smooth(np.ascontiguousarray(working_bgr[..., ::-1])))
+
+
+# One for all frames of a size: what a method prepares for a camera, it need not prepare again.
+_nominal = lru_cache(maxsize=4)(CameraModel.nominal)
 
 
 def _check_name(what: str, name: str, known: tuple[str, ...]) -> None:

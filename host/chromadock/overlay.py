@@ -1,8 +1,8 @@
 """The picture of one detection, laid out like the paper's figures.
 
-Left the frame with the pose axes, accepted blobs and marker names; right what the colour
-mask let through, with accepted (green) and rejected (red) blobs; below the colours and
-one line of text.
+Left the frame with the pose axes (the track's, where there is one), accepted blobs and marker
+names; right what the colour mask let through, with accepted (green) and rejected (red) blobs;
+below the colours and one line of text.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from chromadock.detection import Blob, Detection, Pose
 from chromadock.dock import DockGeometry
 from chromadock.draw import BLUE, DIM, GREEN, INK, PAPER, RED, Canvas
 from chromadock.rotation import matrix_from_quaternion
+from chromadock.track.result import Track, TrackedPose
 
 _GAP = 4
 _MIN_PANEL = (320, 90)
@@ -64,8 +65,9 @@ def draw_overlay(
         _draw_blob(right, blob)
         if blob.accepted:
             _draw_blob(left, blob)
-    if detection.pose is not None:
-        _draw_axes(left, detection.pose, camera, dock)
+    pose = _pose(detection)
+    if pose is not None:
+        _draw_axes(left, pose, camera, dock)
     if detection.markers:
         _draw_names(left, detection.markers)
     above = np.concatenate([left.image, _filled(left.height, _GAP), right.image], axis=1)
@@ -100,7 +102,16 @@ def _draw_blob(canvas: Canvas, blob: Blob) -> None:
     canvas.circle((blob.x, blob.y), radius, GREEN if blob.accepted else RED)
 
 
-def _draw_axes(canvas: Canvas, pose: Pose, camera: CameraModel, dock: DockGeometry) -> None:
+def _pose(detection: Detection) -> Pose | TrackedPose | None:
+    """The track's, else this frame's."""
+    if detection.track is not None and detection.track.pose is not None:
+        return detection.track.pose
+    return detection.pose
+
+
+def _draw_axes(
+    canvas: Canvas, pose: Pose | TrackedPose, camera: CameraModel, dock: DockGeometry
+) -> None:
     """The dock's axes from its origin: x red, y green, z blue."""
     length = _AXIS_SHARE * float(np.ptp(dock.points, axis=0).max())
     tips_dock = np.concatenate([np.zeros((1, 3)), np.eye(3) * length])
@@ -149,10 +160,21 @@ def _swatches(detection: Detection) -> list[tuple[str, tuple[int, int, int] | No
 
 def _words(detection: Detection) -> tuple[str, str]:
     state = detection.state.replace("_", " ")
+    track = "" if detection.track is None else f"   track {_track_words(detection.track)}"
     if detection.pose is None:
         rejected = sum(not blob.accepted for blob in detection.blobs)
         if not detection.blobs:
-            return state, "   no blobs"
-        return state, f"   {len(detection.blobs)} blobs, {rejected} rejected"
+            return state, f"   no blobs{track}"
+        return state, f"   {len(detection.blobs)} blobs, {rejected} rejected{track}"
     distance = float(np.linalg.norm(detection.pose.t))
-    return state, f"   range {distance:.2f} m   error {detection.pose.reprojection_px:.2f} px"
+    error = detection.pose.reprojection_px
+    return state, f"   range {distance:.2f} m   error {error:.2f} px{track}"
+
+
+def _track_words(track: Track) -> str:
+    """The state, and where the dock is by all frames."""
+    state = track.state.replace("_", " ")
+    if track.pose is None:
+        return state
+    either = "" if track.alternative is None else f", {100 * track.pose.weight:.0f} % sure"
+    return f"{state}, {float(np.linalg.norm(track.pose.t)):.2f} m{either}"

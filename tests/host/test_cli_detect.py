@@ -105,8 +105,9 @@ def test_json_is_one_object_a_frame_and_nothing_else_on_standard_output(folder):
     assert [r["time_s"] for r in records] == [0, 0.1, 0.2]
     assert set(records[0]) == {
         "file", "frame", "time_s", "state", "found", "background", "marker", "observed",
-        "passed_fraction", "blobs", "markers", "pose", "timing_ms",
+        "passed_fraction", "blobs", "markers", "pose", "evidence", "track", "timing_ms",
     }  # fmt: skip
+    assert records[0]["track"] is None
     assert records[0]["background"]["rgb"] == pytest.approx(WATER[::-1], abs=4)
     assert done.stderr.splitlines() == ["3 frames, 0 found, 0 skipped"]
 
@@ -118,7 +119,7 @@ def test_without_json_it_is_a_table_and_a_summary(folder):
     head, *rows, summary = done.stdout.splitlines()
     assert head.split()[:2] == ["frame", "time"]
     assert [row.split()[-1] for row in rows] == ["1.png", "2.png", "10.png"]
-    assert all("not found" in row for row in rows)
+    assert all("not found" in row and "never seen" in row for row in rows)
     assert summary == "3 frames, 0 found, 0 skipped"
 
 
@@ -234,8 +235,8 @@ def test_a_corrupt_picture_is_reported_skipped_and_counted(folder):
         (["notes.txt"], "notes.txt: cannot be read as a video or picture: check"),
         (["broken.png"], "broken.png: not a whole picture"),
         (["97"], "camera 97: does not open: check"),
-        (["in", "--mapping", "rainbow"], "'rainbow': choose one of ternary, complement"),
-        (["in", "--method", "magic"], "'magic': choose one of paper"),
+        (["in", "--mapping", "rainbow"], "'rainbow': choose one of ternary, complement, contrast"),
+        (["in", "--method", "magic"], "'magic': choose one of robust, paper"),
         (["in", "--fps", "0"], "--fps is 0: it must be a positive number"),
         (["in", "--fps", "many"], "--fps"),
         (["in", "--camera", "none.yaml"], "none.yaml: cannot read"),

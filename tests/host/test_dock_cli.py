@@ -78,7 +78,7 @@ def test_watch_goes_on_where_the_dock_reports_nothing_by_itself(dock):
 def test_params_list_shows_each_with_its_value_and_range(dock):
     lines = dock("params", "list").splitlines()[1:]
     assert [line.split()[0] for line in lines] == [p.name for p in PARAMETERS]
-    assert re.search(r"MAPPING +ternary +ternary \| complement +ternary", lines[0])
+    assert re.search(r"MAPPING +ternary +ternary \| complement \| contrast +ternary", lines[0])
     assert re.search(r"WINDOW_MS +2000 ms +100 .. 2000 ms +2000 ms", lines[1])
 
 
@@ -88,6 +88,8 @@ def test_params_list_shows_each_with_its_value_and_range(dock):
         ("MAPPING", "complement", "complement"),
         ("mapping", "1", "complement"),
         ("MAPPING", "comp", "complement"),
+        ("MAPPING", "contrast", "contrast"),
+        ("mapping", "2", "contrast"),
         ("LED_GAMMA", "1.8", "1.8"),
         ("LED_GAMMA", "1", "1.0"),
         ("CAM_LOCK", "auto", "automatic, for focusing and snapshots only"),

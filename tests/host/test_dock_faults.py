@@ -354,7 +354,7 @@ def test_messages_for_others_and_from_others_change_nothing(url):
         (("params", "get", "LED_LIMITS"), "did you mean LED_LIMIT?"),
         (("params", "get", "qqq"), "params list"),
         (("params", "set", "MAPPING", "sepia"), "ternary | complement"),
-        (("params", "set", "MAPPING", "2"), "ternary | complement"),
+        (("params", "set", "MAPPING", "3"), "ternary | complement | contrast"),
         (("params", "set", "LED_GAMMA", "2"), "1.0 | 1.8 | 2.2 | 2.8"),
         (("params", "set", "WINDOW_MS", "50"), "100 .. 2000 ms"),
         (("params", "set", "WINDOW_MS", "500.5"), "a whole number 100 .. 2000 ms"),

@@ -1,6 +1,7 @@
 """The overlay picture: its layout, and that what it shows is where it should be."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from chromadock.dock import DockGeometry
 from chromadock.draw import GREEN, RED, pure_rgb
 from chromadock.overlay import draw_overlay
 from chromadock.rotation import matrix_from_quaternion
+from chromadock.track.result import Track, TrackedPose
 
 WATER = (31, 160, 201)
 MARKER = (255, 0, 191)
@@ -99,6 +101,32 @@ def test_the_axes_start_at_the_dock_and_point_along_it():
     blue, green, red = picture[y, x]
     assert green > 200 > red
     assert blue < 150
+
+
+def tracked(pose, weight=1.0, alternative=None):
+    """A detection of nothing in this frame, with a track all the same."""
+    where = TrackedPose(pose.t, pose.q_wxyz, (0.0,) * 36, weight)
+    track = Track("recently_lost", 1.0, where, alternative, age_s=0.5)
+    return replace(detection(), track=track)
+
+
+def test_the_axes_are_the_tracks_where_there_is_one():
+    camera, frame = CameraModel.nominal(640, 480), np.full((480, 640, 3), 90, np.uint8)
+    pose = Pose((0.2, -0.1, 1.5), (1, 0, 0, 0), 0.4)
+    picture = draw_overlay(frame, frame[..., 0] > 0, tracked(pose), camera, DOCK)
+    x, y = np.round(camera.project([np.add((0.15, 0, 0), pose.t)])[0]).astype(int)
+    _, green, red = picture[y, x]
+    assert red > 200 > green
+
+
+def test_the_text_tells_the_tracks_state_and_how_sure_it_is():
+    frame, pose = np.full((480, 640, 3), 90, np.uint8), Pose((0, 0, 2.0), (1, 0, 0, 0), 0.4)
+    other = TrackedPose(pose.t, pose.q_wxyz, (0.0,) * 36, 0.3)
+    strips = [
+        draw_overlay(frame, frame[..., 0], each, CameraModel.nominal(640, 480), DOCK)[480:]
+        for each in (detection(), tracked(pose), tracked(pose, 0.7, other))
+    ]
+    assert (strips[0] != strips[1]).any() and (strips[1] != strips[2]).any()
 
 
 def test_a_pose_behind_the_camera_draws_no_axes():

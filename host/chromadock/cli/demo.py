@@ -90,9 +90,10 @@ def _print_table(records: Sequence[Record]) -> None:
     Console().print(table)
     errors = [r.position_error_m for r in records if r.position_error_m is not None]
     median = f", median position error {np.median(errors):.3f} m" if errors else ""
+    found = sum(r.detection.found for r in records)
     apart = max(r.hue_disagreement_deg for r in records)
     print(
-        f"simulated: found in {len(errors)} of {len(records)} frames{median}; "
+        f"simulated: found in {found} of {len(records)} frames{median}; "
         f"dock and vehicle at most {apart:.1f}° of hue apart"
     )
 

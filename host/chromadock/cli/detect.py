@@ -10,7 +10,7 @@ import typer
 
 from chromadock.camera import CameraModel
 from chromadock.cli.report import Report
-from chromadock.detector import MAPPINGS, METHODS, Detector
+from chromadock.detector import DEFAULT_METHOD, MAPPINGS, METHODS, Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.method import DEFAULT_MAPPING_NAME
@@ -41,13 +41,19 @@ def detect(
         Path | None,
         typer.Option(help="TOML file with the dock's markers.", show_default="the original one"),
     ] = None,
-    method: Annotated[str, typer.Option(help=f"How to find it: {', '.join(METHODS)}.")] = "paper",
+    method: Annotated[
+        str, typer.Option(help=f"How to find it: {', '.join(METHODS)}.")
+    ] = DEFAULT_METHOD,
     mapping: Annotated[
         str,
         typer.Option(help=f"From water to marker colour, as in the dock: {', '.join(MAPPINGS)}."),
     ] = DEFAULT_MAPPING_NAME,
     independent: Annotated[
-        bool, typer.Option("--independent", help="Treat every frame alone.")
+        bool,
+        typer.Option(
+            "--independent",
+            help="Treat every frame alone: no mean of the colour over time, no track.",
+        ),
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
     overlay: Annotated[
@@ -58,7 +64,11 @@ def detect(
         float, typer.Option(help="Frames a second of a folder of pictures.")
     ] = DEFAULT_FPS,
 ) -> None:
-    """Find the dock in every frame of SOURCE and tell where it is."""
+    """Find the dock in every frame of SOURCE and tell where it is.
+
+    From frame to frame it is tracked: through frames in which it is hidden, and with
+    a marker out.  docs/track.md tells what the states mean.
+    """
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock)
     model = None if camera is None else CameraModel.from_yaml(camera)
     detector = Detector(model, geometry, method=method, mapping=mapping, independent=independent)

@@ -17,7 +17,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from chromadock.detection import Detection
+from chromadock.detection import Detection, Marker
 from chromadock.output import json_line
 from chromadock.sources import Frame
 from chromadock.text import plural
@@ -25,7 +25,15 @@ from chromadock.text import plural
 _LONG = 20
 """Sources with fewer frames are done before a bar could be read."""
 
-_HEADER = "   frame   time s  state       range m        x        y        z  error px  file"
+_COMPARED_FRAMES = 15
+_DISAGREEMENT_DEG = 75.0
+"""The mean of so many tracked frames says whether dock and vehicle agree: single ones err by
+more, and water and crosstalk turn the light of a dock that agrees by up to about 60 degrees."""
+
+_HEADER = (
+    "   frame   time s  state       range m        x        y        z  error px"
+    "  track             m  file"
+)
 
 
 class Report:
@@ -41,13 +49,17 @@ class Report:
         self._bar: Progress | None = None
         self._frames = 0
         self._found = 0
+        self._tracked = 0
         self._skipped = 0
+        self._off: list[complex] = []
 
     def frame(self, frame: Frame, detection: Detection) -> None:
         """Tell of one frame."""
         if detection.pose is not None and not self._calibrated:
             self._calibrated = True  # once is enough
             self._aside("warning: no --camera: a usual lens is assumed, so distances are rough")
+        if detection.track is not None and detection.track.pose is not None:
+            self._compare(detection.marker)
         if self._json:
             record = {"file": frame.name, "frame": frame.index, "time_s": round(frame.time_s, 6)}
             self._print(json_line({**record, **detection.to_dict()}))
@@ -57,8 +69,22 @@ class Report:
             self._print(_row(frame, detection))
         self._frames += 1
         self._found += detection.found
+        self._tracked += detection.track is not None and detection.track.state == "tracking"
         if self._bar is not None:
             self._bar.advance(self._bar.task_ids[0])
+
+    def _compare(self, marker: Marker) -> None:
+        """Say once that the dock is of another colour than expected."""
+        if marker.received_deg is None:
+            return
+        self._off.append(np.exp(1j * np.radians(marker.received_deg - marker.hue_deg)))
+        if len(self._off) == _COMPARED_FRAMES:
+            off_deg = float(np.degrees(np.angle(sum(self._off))))
+            if abs(off_deg) > _DISAGREEMENT_DEG:
+                self._aside(
+                    f"warning: the dock's light is {off_deg:+.0f} degrees of hue from what this "
+                    "camera's water says: lock white balance and gain on both cameras"
+                )
 
     def skipped(self, line: str) -> None:
         """Tell of a picture that could not be read."""
@@ -69,7 +95,11 @@ class Report:
 
     def summary(self) -> None:
         """The last line."""
-        words = f"{plural(self._frames, 'frame')}, {self._found} found, {self._skipped} skipped"
+        tracked = f"{self._tracked} tracked, " if self._tracked else ""
+        words = (
+            f"{plural(self._frames, 'frame')}, {self._found} found, {tracked}"
+            f"{self._skipped} skipped"
+        )
         print(words, file=sys.stderr if self._json else sys.stdout, flush=True)
 
     @contextmanager
@@ -115,10 +145,23 @@ class Report:
 
 def _row(frame: Frame, detection: Detection) -> str:
     """One frame in the columns of ``_HEADER``; metres in the camera frame."""
+    return f"{_frame_columns(frame, detection)}  {_track_columns(detection)}  {frame.name}"
+
+
+def _track_columns(detection: Detection) -> str:
+    """State and range of the track, in the 13 and 6 columns that they have."""
+    track = detection.track
+    if track is None:
+        return f"{'-':<13}{'-':>6}"
+    away = "-" if track.pose is None else f"{float(np.linalg.norm(track.pose.t)):.2f}"
+    return f"{track.state.replace('_', ' '):<13}{away:>6}"
+
+
+def _frame_columns(frame: Frame, detection: Detection) -> str:
     start = f"{frame.index:8d} {frame.time_s:8.3f}  {detection.state.replace('_', ' '):<10}"
     pose = detection.pose
     if pose is None:
-        return f"{start}{'-':>9}{'-':>9}{'-':>9}{'-':>9}{'-':>10}  {frame.name}"
+        return f"{start}{'-':>9}{'-':>9}{'-':>9}{'-':>9}{'-':>10}"
     x, y, z = pose.t
     away = float(np.linalg.norm(pose.t))
-    return f"{start}{away:9.3f}{x:9.3f}{y:9.3f}{z:9.3f}{pose.reprojection_px:10.2f}  {frame.name}"
+    return f"{start}{away:9.3f}{x:9.3f}{y:9.3f}{z:9.3f}{pose.reprojection_px:10.2f}"

@@ -37,17 +37,17 @@ class Leg:
         return load_scene(self.scene_name, self.changes)
 
 
-# Distances at which the paper's method can see them: far in the pool, near in the lake.
+# From about where the dock begins to be seen: far in the pool, near in the lake.
 LEGS = (
     Leg(
         "pool",
         7.0,
-        {"vehicle.distance_m": 5.0, "vehicle.approach": {"to_m": 1.6, "duration_s": 7.0}},
+        {"vehicle.distance_m": 7.0, "vehicle.approach": {"to_m": 1.6, "duration_s": 7.0}},
     ),
     Leg(
         "lake",
         5.0,
-        {"vehicle.distance_m": 1.4, "vehicle.approach": {"to_m": 0.9, "duration_s": 5.0}},
+        {"vehicle.distance_m": 2.4, "vehicle.approach": {"to_m": 0.9, "duration_s": 5.0}},
     ),
 )
 COUNT = sum(leg.count for leg in LEGS)

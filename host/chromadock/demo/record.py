@@ -50,7 +50,7 @@ class Record:
 
     @property
     def range_m(self) -> float | None:
-        """The same as measured; None where the dock was not found."""
+        """The same as measured; None where neither the dock nor most of it was found."""
         pose = self.detection.pose
         return None if pose is None else float(np.linalg.norm(pose.t))
 

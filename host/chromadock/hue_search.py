@@ -1,0 +1,53 @@
+"""Which hue to look for, when the dock may not show the one that this camera's water says.
+
+Two cameras with different white balance see different water.  The detector finds markers up to
+about OFFSET_STEP from the hue it looks for; so a few hues about the circle reach every dock.
+Each frame is searched for one of them only: the time a frame takes stays the same, and until
+the dock is found every second frame is given away.
+"""
+
+from __future__ import annotations
+
+from chromadock import method
+
+OFFSET_STEP = method.HUE_RANGE // 6
+"""60 degrees: at half of it, 30 degrees off, the detector still finds a dock at 4 m in 0.92 to
+0.94 of frames, against 0.95 at the right hue (docs/robust.md)."""
+
+# Nearest first: small disagreements are the usual ones.
+_OTHERS = (1, -1, 2, -2, 3)
+
+HOLD_LOOKS = 12
+"""Looks for which an offset that found something is kept: more than a lock takes."""
+
+
+class HueSearch:
+    """Where to look next on the circle of hues, from what the looks before found."""
+
+    def __init__(self) -> None:
+        self._home = 0
+        self._offset = 0
+        self._held = 0
+        self._turn = 0
+
+    @property
+    def offset(self) -> int:
+        """Steps, -768..768, from the expected hue to the one to look for in the next frame."""
+        return self._offset
+
+    def looked(self, found: bool, locked: bool) -> None:
+        """Take whether the look at ``offset`` found markers, and whether a track is locked."""
+        if found or locked:
+            self._held = HOLD_LOOKS
+        elif self._held:
+            self._held -= 1
+        if locked:
+            self._home = self._offset
+        if self._held:
+            return
+        if self._offset != self._home:
+            self._offset = self._home
+            return
+        others = [o for o in (0, *(OFFSET_STEP * k for k in _OTHERS)) if o != self._home]
+        self._offset = others[self._turn % len(others)]
+        self._turn += 1

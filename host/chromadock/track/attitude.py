@@ -1,0 +1,97 @@
+"""What the vehicle knows of its own attitude, in the camera's axes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.errors import ChromadockError
+from chromadock.robust.shape import ATTITUDE_RAD
+
+Floats = NDArray[np.float64]
+
+R_BODY_CAMERA_FORWARD = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+"""Camera axes in the body's for a camera that looks ahead: its x is the body's y (right), its y
+the body's z (down), its z the body's x (forward)."""
+
+
+LEVEL_RAD = 0.06
+"""Error of the dock's pitch and roll as the vehicle's attitude has them, for a dock that should be
+level: 3.4 degrees of bobbing, of mounting and of the IMU together."""
+
+
+@dataclass(frozen=True, slots=True)
+class Attitude:
+    """The vehicle's attitude when a frame was taken, as MAVLink's ATTITUDE has it.
+
+    Radians, of the body (FRD: x forward, y right, z down) in north, east, down: ``yaw_rad``
+    about down, then ``pitch_rad`` about right, then ``roll_rad`` about forward.  ``yaw_rad``
+    may be None; from any origin it does, since only its changes are used.
+
+    Raises
+    ------
+    ChromadockError
+        For a number that is not finite.
+    """
+
+    roll_rad: float
+    pitch_rad: float
+    yaw_rad: float | None = None
+
+    def __post_init__(self) -> None:
+        given = (self.roll_rad, self.pitch_rad, self.yaw_rad or 0.0)
+        if not all(math.isfinite(angle) for angle in given):
+            raise ChromadockError(
+                f"attitude {given}: roll, pitch and yaw must be finite, in radians; "
+                "leave the attitude out where it is not known"
+            )
+
+    @property
+    def R_world_body(self) -> Floats:
+        """(3, 3), world: north, east, down; an unknown yaw is taken for 0."""
+        roll, pitch, yaw = self.roll_rad, self.pitch_rad, self.yaw_rad or 0.0
+        about_z, about_y, about_x = (
+            np.asarray(cv2.Rodrigues(np.array(turn))[0])
+            for turn in ((0.0, 0.0, yaw), (0.0, pitch, 0.0), (roll, 0.0, 0.0))
+        )
+        return np.asarray(about_z @ about_y @ about_x, np.float64)
+
+    def turn_since(self, earlier: Attitude, R_body_camera: Floats) -> Floats | None:
+        """(3,) rotation vector of the camera since then, radians, in its own axes.
+
+        None where either has no yaw.
+        """
+        if self.yaw_rad is None or earlier.yaw_rad is None:
+            return None
+        R_then_now = (earlier.R_world_body @ R_body_camera).T @ self.R_world_body @ R_body_camera
+        return np.asarray(cv2.Rodrigues(R_then_now)[0], np.float64).ravel()
+
+
+def expected(
+    attitude: Attitude | None, R_body_camera: Floats, R_level_dock: Floats
+) -> tuple[Floats, Floats]:
+    """How a vehicle that faces the dock sees it turned: R_camera_dock (3, 3), and the (3, 3)
+    covariance of small turns about the camera's axes.
+
+    Without an attitude the vehicle swims about level.  Its heading against the dock's axis is
+    known to no better than robust/shape.py's ATTITUDE_RAD in either case, as the search takes it.
+
+    Parameters
+    ----------
+    R_body_camera : the camera's axes in the body's.
+    R_level_dock : the dock's axes in those of a dock that hangs level.
+    """
+    pitch, yaw, roll = ATTITUDE_RAD.tolist()
+    tilt = LEVEL_RAD
+    if attitude is None:
+        attitude, tilt = Attitude(0.0, 0.0), max(pitch, roll)
+    R_level_body = Attitude(attitude.roll_rad, attitude.pitch_rad).R_world_body
+    R_camera_level = (R_level_body @ R_body_camera).T
+    down = R_camera_level[:, 2]
+    about_down = np.outer(down, down)
+    covariance = tilt**2 * (np.eye(3) - about_down) + yaw**2 * about_down
+    return R_camera_level @ R_BODY_CAMERA_FORWARD @ R_level_dock, covariance

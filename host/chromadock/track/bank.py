@@ -1,0 +1,180 @@
+"""Poses that frames leave open, side by side until the data decide.
+
+A Gaussian sum filter (Alspach and Sorenson, IEEE Trans. Automatic Control 17 (1972) 439): each
+hypothesis is updated towards each pose that a frame leaves open, and weighted by how probable
+that makes the frame; those that come out the same are one, and those that the data speak against
+are dropped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.pose import same_rotation
+from chromadock.track.fusion import Fused, with_attitude, with_markers, with_turn_rate
+from chromadock.track.motion import POSE, State, met, turn_between
+from chromadock.track.sight import Sight
+
+Floats = NDArray[np.float64]
+
+MAX_HYPOTHESES = 3
+"""Two planar poses, and one on its way from the one to the other."""
+
+FORGOTTEN = 1e-3
+"""Less likely hypotheses are dropped: the data have decided."""
+
+SWITCH_ODDS = 3.0
+"""The first of nearly equal hypotheses stays the first until another is so much likelier: noise
+alone must not make the pose jump."""
+
+REBORN = 0.05
+"""Probability that the true pose is one that had been dropped, or never came up, when a frame
+leaves one open that no hypothesis covers."""
+
+# Not covered: 2.4 standard deviations of the difference, squared.  Farther, and from afar the
+# other pose would never come back, its errors being as large as what tells it apart.
+_FAR = 6.0
+
+# Two equal normal distributions have one top up to two standard deviations apart, 2 in this
+# measure; but what the pixels leave open is curved, and merged too soon the sum covers neither.
+_SAME = 0.5
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Hypothesis:
+    """One way it may be, and its probability among those of its bank."""
+
+    state: State
+    weight: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Bank:
+    """Hypotheses of one dock, MAX_HYPOTHESES at most; their weights sum to 1.
+
+    The first is the one to go by, mostly the likeliest: see SWITCH_ODDS.
+    """
+
+    hypotheses: tuple[Hypothesis, ...]
+
+    @classmethod
+    def of(cls, sight: Sight) -> Bank:
+        """From the poses that a first frame leaves open."""
+        return _bank(
+            [_Branch(met(p.R, p.t, p.covariance), -p.chi_square / 2, False) for p in sight.poses]
+        )
+
+    def after(self, elapsed_s: float) -> Bank:
+        """The same ``elapsed_s`` >= 0 later, nothing seen meanwhile."""
+        return Bank(tuple(replace(h, state=h.state.after(elapsed_s)) for h in self.hypotheses))
+
+    def seen(self, sight: Sight) -> Bank | None:
+        """After a frame; None where that is no place for this dock to be: beyond the gate."""
+        branches: list[_Branch] = []
+        for i, h in enumerate(self.hypotheses):
+            branches += [_branch(h, f, first=i == 0) for f in _modes(h.state, sight)]
+        return _bank(branches) if branches else None
+
+    def doubting(self, sight: Sight) -> Bank:
+        """With the poses of a frame that it is far from, moving as its first does: REBORN."""
+        first = self.hypotheses[0].state
+        branches = [
+            _Branch(h.state, float(np.log(h.weight)), i == 0) for i, h in enumerate(self.hypotheses)
+        ]
+        for pose in sight.poses:
+            anew = first.moved_to(pose.R, pose.t, pose.covariance)
+            if all(_distance(anew, h.state) > _FAR for h in self.hypotheses):
+                less = (pose.chi_square - sight.poses[0].chi_square) / 2
+                branches.append(_Branch(anew, float(np.log(REBORN)) - less, False))
+        return _bank(branches)
+
+    def facing(self, R_expected: Floats, covariance: Floats) -> Bank:
+        """After the vehicle told how it should see the dock turned: see ``with_attitude``."""
+        return self._told(lambda state: with_attitude(state, R_expected, covariance))
+
+    def turning(self, turn_rate: Floats) -> Bank:
+        """After the vehicle told at which rate (3,) rad/s its camera turns."""
+        return self._told(lambda state: with_turn_rate(state, turn_rate))
+
+    def _told(self, fuse: Callable[[State], Fused]) -> Bank:
+        return _bank(
+            [_branch(h, fuse(h.state), first=i == 0) for i, h in enumerate(self.hypotheses)]
+        )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Branch:
+    """What may become a hypothesis; ``first``: it comes of the bank's first."""
+
+    state: State
+    log_weight: float
+    first: bool
+
+
+def _modes(state: State, sight: Sight) -> list[Fused]:
+    """What a state may become by a frame: its most probable poses, those within the gate."""
+    modes: list[Fused] = []
+    starts = [(state.R, state.t), *((p.R, p.t) for p in sight.poses)]
+    for R, t in starts:
+        fused = with_markers(state, sight.markers, R, t)
+        if fused is None or not fused.within_gate:
+            continue
+        if not any(same_rotation(fused.state.R, other.state.R) for other in modes):
+            modes.append(fused)
+    return modes
+
+
+def _branch(h: Hypothesis, fused: Fused, first: bool) -> _Branch:
+    return _Branch(fused.state, float(np.log(h.weight)) + fused.log_likelihood, first)
+
+
+def _bank(branches: list[_Branch]) -> Bank:
+    """Merged, pruned, and in order."""
+    most = max(b.log_weight for b in branches)
+    left = sorted(branches, key=lambda b: -b.log_weight)
+    kept: list[_Branch] = []
+    while left:
+        one = left.pop(0)
+        for other in [b for b in left if _distance(one.state, b.state) < _SAME]:
+            one = _merged(one, other)
+            left.remove(other)
+        kept.append(one)
+    kept = [b for b in kept if b.log_weight > most + np.log(FORGOTTEN)]
+    kept = sorted(kept, key=lambda b: -b.log_weight)[:MAX_HYPOTHESES]
+    kept.sort(key=lambda b: -b.log_weight - (np.log(SWITCH_ODDS) if b.first else 0.0))
+    weights = np.exp([b.log_weight - most for b in kept])
+    weights /= weights.sum()
+    return Bank(tuple(Hypothesis(b.state, float(w)) for b, w in zip(kept, weights, strict=True)))
+
+
+def _off(a: State, b: State) -> Floats:
+    """(12,) from a to b."""
+    return np.concatenate(
+        [
+            b.t - a.t,
+            turn_between(a.R, b.R),
+            b.velocity - a.velocity,
+            b.turn_rate - a.turn_rate,
+        ]
+    )
+
+
+def _distance(a: State, b: State) -> float:
+    """Squared, of the poses, in standard deviations of their difference."""
+    off = _off(a, b)[POSE]
+    return float(off @ np.linalg.solve((a.covariance + b.covariance)[POSE, POSE], off))
+
+
+def _merged(a: _Branch, b: _Branch) -> _Branch:
+    """One normal distribution with the mean and the covariance of both together."""
+    log_weight = float(np.logaddexp(a.log_weight, b.log_weight))
+    share = float(np.exp(b.log_weight - log_weight))
+    off = _off(a.state, b.state)
+    covariance = (1 - share) * a.state.covariance + share * b.state.covariance
+    covariance = covariance + share * (1 - share) * np.outer(off, off)
+    state = a.state.corrected(share * off, covariance)
+    return _Branch(state, log_weight, a.first or b.first)

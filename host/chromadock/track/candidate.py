@@ -1,0 +1,75 @@
+"""A dock that was seen, but is not trusted yet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from chromadock.track.bank import Bank
+from chromadock.track.sight import Sight
+
+LOCK_FRAMES = 3
+"""Frames that found a whole dock, each where the ones before have it."""
+
+LOCK_SPAN_S = 0.1
+"""Between the first and the last of them: a glint lasts a few hundredths of a second."""
+
+LOCK_EVIDENCE = 3.0
+"""Decades, of the best frame: clutter has as much in less than one picture in 1000 (Markov's
+bound, see robust/acceptance.py; on 1500 shaken views of real water without a dock the most was
+2.94).  The best, not the sum: frames of the same scene are no independent evidence."""
+
+LOCK_SHARE = 0.5
+"""Of the looks since the first that found it: clutter that looks like a dock does so in one frame
+and not in the next (the likest of the real photographs in a quarter of them), a dock in nearly all
+until it is about to be out of reach."""
+
+PATIENT_EVIDENCE = 1.9
+PATIENT_FRAMES = 10
+"""Less evidence of the best frame will do where so many frames agree: one picture in eighty of
+clutter has it, and few of those again and again where a moving vehicle must see it.  Three markers
+of four come no farther than 2.0 even in clear water."""
+
+GIVEN_UP_S = 0.5
+"""A candidate not seen for so long is dropped: a better one begins anew."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Candidate:
+    """``bank`` at ``time_s``, the last of ``frames`` that saw it, of so many ``looks`` since
+    ``since_s``; ``evidence`` of the best."""
+
+    bank: Bank
+    since_s: float
+    time_s: float
+    frames: int
+    looks: int
+    evidence: float
+
+    @classmethod
+    def of(cls, sight: Sight, evidence: float, time_s: float) -> Candidate:
+        """From the first frame."""
+        return cls(Bank.of(sight), time_s, time_s, 1, 1, evidence)
+
+    def seen(self, sight: Sight, evidence: float, time_s: float) -> Candidate | None:
+        """After another frame with a dock; None where that is elsewhere."""
+        bank = self.bank.after(time_s - self.time_s).seen(sight)
+        if bank is None:
+            return None
+        best = max(self.evidence, evidence)
+        return replace(self, bank=bank, time_s=time_s, frames=self.frames + 1, evidence=best)
+
+    def looked_for(self) -> Candidate:
+        """With one more look at a whole frame, whatever that found."""
+        return replace(self, looks=self.looks + 1)
+
+    @property
+    def locked(self) -> bool:
+        """Whether it is to be trusted now."""
+        strong = self.evidence >= LOCK_EVIDENCE and self.frames >= LOCK_FRAMES
+        patient = self.evidence >= PATIENT_EVIDENCE and self.frames >= PATIENT_FRAMES
+        steady = self.frames >= LOCK_SHARE * self.looks
+        return (strong or patient) and steady and self.time_s - self.since_s >= LOCK_SPAN_S
+
+    def given_up(self, time_s: float) -> bool:
+        """Whether it was last seen too long ago."""
+        return time_s - self.time_s > GIVEN_UP_S

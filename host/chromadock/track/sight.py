@@ -1,0 +1,60 @@
+"""The markers of a frame as a measurement for the track."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from chromadock.camera import CameraModel
+from chromadock.dock import DockGeometry
+from chromadock.pose import Estimate, Sighting, projected
+
+FLOOR_PX = 0.2
+"""Of a marker's error, however bright it is: a colour camera samples red and blue at every other
+pixel, and a good calibration leaves 0.1 to 0.3 pixels."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sight:
+    """``markers`` with their errors, and the poses that they leave open, the best first."""
+
+    markers: Sighting
+    poses: tuple[Estimate, ...]
+
+    @classmethod
+    def of(
+        cls,
+        markers: Mapping[str, tuple[float, float]],
+        poses: Sequence[Estimate],
+        dock: DockGeometry,
+        camera: CameraModel,
+    ) -> Sight | None:
+        """From what a method found; all markers' errors are taken for equal.
+
+        None where the best pose has a marker behind the camera.
+        """
+        points = dock.points[[dock.names.index(name) for name in markers]]
+        best = poses[0]
+        seen = projected(points, best.R, best.t, camera)
+        if seen is None:
+            return None
+        jacobian = seen[1].reshape(-1, 6)
+        # With J the derivatives and errors s: information = J^T J / s^2.
+        unit = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
+        certainty = float(np.trace(unit @ best.information)) / 6
+        widened = 1 + FLOOR_PX**2 * certainty
+        sigma = np.full(len(points), np.sqrt(widened / certainty))
+        return cls(
+            Sighting(points, np.array(list(markers.values())), sigma, camera),
+            tuple(
+                replace(p, chi_square=p.chi_square / widened, information=p.information / widened)
+                for p in poses
+            ),
+        )
+
+    def worth(self, share: float) -> Sight:
+        """The same with ``share`` 0..1 of its information."""
+        seen = self.markers
+        return Sight(replace(seen, sigma_px=seen.sigma_px / np.sqrt(max(share, 1e-9))), self.poses)

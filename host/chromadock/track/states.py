@@ -1,0 +1,29 @@
+"""How sure the track is of the dock: states and when they change."""
+
+from __future__ import annotations
+
+TRACKING_S = 0.3
+"""A dock seen within this is tracked: as long as a camera of 10 Hz takes for three frames.
+The prediction is good to centimetres still: 0.3 s of ACCELERATION are 3 cm."""
+
+KEPT_S = 2.5
+"""After this nothing is expected any more.  By then place is uncertain by 0.7 m: as wide as the
+dock, so that where it was says no more than a search of the whole frame finds."""
+
+STATES = ("never_seen", "acquiring", "tracking", "recently_lost", "lost")
+
+
+def state_of(age_s: float | None, candidate: bool, seen: bool) -> str:
+    """One of ``STATES``.
+
+    Parameters
+    ----------
+    age_s : since a locked dock was last measured; None without a locked one.
+    candidate : whether there is a dock that may become locked.
+    seen : whether any was locked before.
+    """
+    if age_s is not None and age_s <= KEPT_S:
+        return "tracking" if age_s <= TRACKING_S else "recently_lost"
+    if candidate:
+        return "acquiring"
+    return "lost" if seen else "never_seen"

@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 FILTERS = {
+    "robust": (2e-4, 2e-4, 8.0),
     # Medians of the share of pixels passed: (lake, pool), and how far one recalls markers.
     "adaptive ternary": (3e-4, 4e-4, 6.0),
     "adaptive complement": (6e-3, 2e-3, 4.0),
@@ -23,7 +24,7 @@ FILTERS = {
 PROVENANCE = {
     "experiments": {
         name: {"seed": 7, "digest": "0123456789abcdef"}
-        for name in ("lake", "pool", "photographs", "rendered water", "tint", "balance")
+        for name in ("lake", "pool", "photographs", "rendered water", "tint", "balance", "hues")
     },
     "versions": {"chromadock": "0.1.0", "jerlov": "0.22.0"},
 }
@@ -53,7 +54,7 @@ def write_evaluation(out: Path, frames: int = 24) -> pl.DataFrame:
 
 
 def runs() -> Iterator[dict[str, Any]]:
-    """The paper's runs, one with photographs, and two sweeps."""
+    """The paper's runs, one with photographs, two sweeps and a study of mappings."""
     for distance, heading in itertools.product((1.0, 3.0, 5.0), "NESW"):
         name = f"lake {distance:g} m {heading}"
         yield run_of("lake", name, "lake", "ternary", distance, heading)
@@ -69,6 +70,12 @@ def runs() -> Iterator[dict[str, Any]]:
     for dock, vehicle in itertools.product(("locked", "auto"), repeat=2):
         vary = {"dock_camera.white_balance": dock, "vehicle_camera.white_balance": vehicle}
         yield run_of("balance", f"balance {dock} {vehicle}", "pool", "ternary", 3.0, vary=vary)
+
+    for water, mapping, distance in itertools.product(
+        ("brown", "green"), ("ternary", "complement", "contrast"), (3.0, 7.0)
+    ):
+        name = f"hues {distance:g} m {mapping} {water}"
+        yield run_of("hues", name, "lake", mapping, distance, vary={"body of water": water})
 
 
 def run_of(
@@ -92,7 +99,14 @@ def run_of(
     }
 
 
-VARIED = ("vehicle_camera.tint", "dock_camera.white_balance", "vehicle_camera.white_balance")
+VARIED = (
+    "vehicle_camera.tint",
+    "dock_camera.white_balance",
+    "vehicle_camera.white_balance",
+    "body of water",
+)
+CONTRAST_FINDS = {"brown": 1.0, "green": 0.0}
+"""Share of the frames, at any distance."""
 
 
 def run_rows(
@@ -136,6 +150,8 @@ def measures(
     passed = round(passed * PIXELS * (0 if rng.random() < 0.02 else 1)) / PIXELS
     reach_m *= 0.5 if run["water"] == "lake" else 1.0
     chance = 1 / (1 + np.exp(2 * (run["distance_m"] - reach_m) + (disagreement - 30) / 8))
+    if run["mapping"] == "contrast":
+        chance = CONTRAST_FINDS[run["vary"]["body of water"]]
     correct = bool(rng.random() < chance)
     false = not correct and bool(rng.random() < 0.1)
     distance = run["distance_m"]

@@ -12,6 +12,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
+from results_approach import run_approaches
 from results_document import Run, document, figures
 
 from chromadock.errors import ChromadockError
@@ -51,6 +52,7 @@ def main() -> int:
         return status
     try:
         run = Run.read(OUT)
+        run_approaches(OUT)
         shown = figures(run)
         path = write(DOCS, document(run, shown), shown)
     except ChromadockError as error:

@@ -8,10 +8,12 @@ from pathlib import Path
 
 import polars as pl
 from jinja2 import FileSystemLoader
+from results_approach import approach_drawing, approach_section, read_frames
 from results_claims import claims
 from results_tables import (
     REALISM_M,
     REALISM_POINTS,
+    mapping_study,
     realism,
     recall_table,
     sweep_table,
@@ -22,16 +24,23 @@ from chromadock import method
 from chromadock.errors import ChromadockError
 from chromadock.evaluate import drawings
 from chromadock.evaluate.drawings import Drawing
+from chromadock.evaluate.filters import ROBUST
 from chromadock.evaluate.frames import Evaluation
 from chromadock.evaluate.gallery import read_gallery
 from chromadock.evaluate.provenance import read_provenance, sources, versions_line
 from chromadock.evaluate.rendering import environment, gallery_svg
 from chromadock.evaluate.style import filters
+from chromadock.evaluate.summary import TERNARY
 from chromadock.evaluate.tables import places, ternary_against
 
 LAKE, POOL = "lake", "pool"
 RENDERED, PHOTOGRAPHS = "rendered water", "photographs"
 """Experiments by name."""
+
+SUBJECTS = {ROBUST: "the robust method", TERNARY: "ternary"}
+"""Filters that are told of, and what they are called in a sentence."""
+COMPARED = (TERNARY, ROBUST)
+"""Filters whose recall before photographs is shown beside that in rendered water."""
 
 SHOWN_M = (1.0, 3.0)
 SHOWN_WIDTH = 240
@@ -76,8 +85,13 @@ def _figures(run: Run) -> Iterator[Drawing]:
     if both.height:
         recall = next(drawings.measured(both))
         yield replace(recall, name="photographs", title="Finding the dock before photographs")
+    for study in run.evaluation.studies:
+        yield drawings.compared(study)
     for sweep in run.evaluation.sweeps:
         yield drawings.swept(sweep)
+    approaches = read_frames(run.out)
+    if approaches is not None:
+        yield approach_drawing(approaches)
 
 
 def _gallery(out: Path, paper: pl.DataFrame) -> Drawing:
@@ -92,15 +106,21 @@ def document(run: Run, shown: Mapping[str, Drawing]) -> str:
     """The text; ``shown`` are its figures."""
     paper = run.of(LAKE, POOL)
     provenance = read_provenance(run.out)
+    approaches = read_frames(run.out)
     template = environment(FileSystemLoader(Path(__file__).parent), markup=False)
     return template.get_template("results.md.jinja").render(
         figures=shown,
         ratios=ternary_against(paper),
         recall=recall_table(paper),
-        filters=filters(run.evaluation.frames),
+        filters=filters(paper),
         places=list(places(paper)),
-        sweeps=[(sweep, sweep_table(sweep)) for sweep in run.evaluation.sweeps],
-        realism=realism(run.of(RENDERED), run.of(PHOTOGRAPHS)),
+        studies=[mapping_study(study) for study in run.evaluation.studies],
+        approach=None if approaches is None else approach_section(approaches),
+        sweeps=[
+            (sweep, sweep_table(sweep), filters(sweep.frames)) for sweep in run.evaluation.sweeps
+        ],
+        realism={name: realism(run.of(RENDERED), run.of(PHOTOGRAPHS), name) for name in COMPARED},
+        subjects=SUBJECTS,
         near_m=REALISM_M,
         points=REALISM_POINTS,
         claims=claims(run.of(LAKE), run.of(POOL)),

@@ -12,7 +12,7 @@ import polars as pl
 
 from chromadock.evaluate.frames import Sweep
 from chromadock.evaluate.summary import TERNARY, Estimate, hue_disagreement, recall
-from chromadock.evaluate.tables import recall_by_filter, scenarios
+from chromadock.evaluate.tables import MappingRow, mapping_table, recall_by_filter, scenarios
 
 REALISM_M = (1.0, 3.0)
 REALISM_POINTS = 15.0
@@ -41,18 +41,25 @@ class SweepRow:
 
 
 @dataclass(frozen=True)
-class SweepTable:
-    """``lost`` has the settings at which ternary finds the dock less than half as often as at
+class Verdict:
+    """``lost`` has the settings at which a filter finds the dock less than half as often as at
     its best; ``found`` tells whether it finds it at all."""
 
-    rows: Sequence[SweepRow]
     lost: Sequence[str]
     found: bool
 
 
 @dataclass(frozen=True)
+class SweepTable:
+    """``verdicts`` by filter, of those that were run."""
+
+    rows: Sequence[SweepRow]
+    verdicts: Mapping[str, Verdict]
+
+
+@dataclass(frozen=True)
 class Realism:
-    """Recall of ternary by distance, (metres, rendered, photographs, points between them)."""
+    """Recall of one filter by distance, (metres, rendered, photographs, points between them)."""
 
     rows: Sequence[tuple[float, Estimate, Estimate, float]]
     worst_points: float
@@ -88,23 +95,29 @@ def sweep_table(sweep: Sweep) -> SweepTable:
         SweepRow([_shown(v) for v in setting], hues.get(setting), recall_by_filter(part))
         for setting, part in sweep.frames.group_by(sweep.keys, maintain_order=True)
     ]
-    ternary = [(row.setting, row.recall.get(TERNARY)) for row in rows]
-    best = max((recall.value for _, recall in ternary if recall), default=0.0)
+    return SweepTable(rows, {name: _verdict(rows, name) for name in rows[0].recall})
+
+
+def _verdict(rows: Sequence[SweepRow], name: str) -> Verdict:
+    found = [(row.setting, row.recall.get(name)) for row in rows]
+    best = max((recall.value for _, recall in found if recall), default=0.0)
     lost = [
         " and ".join(setting)
-        for setting, recall in ternary
+        for setting, recall in found
         if recall is None or recall.value < best / 2
     ]
-    return SweepTable(rows, lost, best > 0)
+    return Verdict(lost, best > 0)
 
 
 def _shown(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def realism(rendered: pl.DataFrame, photographs: pl.DataFrame) -> Realism | None:
-    """Rendered water beside photographs; None where one of them was not run."""
-    first, second = (_ternary_by_distance(frames) for frames in (rendered, photographs))
+def realism(
+    rendered: pl.DataFrame, photographs: pl.DataFrame, name: str = TERNARY
+) -> Realism | None:
+    """Rendered water beside photographs for one filter; None where one of them was not run."""
+    first, second = (_by_distance(frames, name) for frames in (rendered, photographs))
     rows = [
         (distance, a, second[distance], 100 * (a.value - second[distance].value))
         for distance, a in first.items()
@@ -118,10 +131,41 @@ def _is_near(distance_m: float) -> bool:
     return REALISM_M[0] <= distance_m <= REALISM_M[1]
 
 
-def _ternary_by_distance(frames: pl.DataFrame) -> dict[float, Estimate]:
-    ternary = frames.filter(pl.col("filter") == TERNARY)
-    found = [(distance, recall(rows)) for (distance,), rows in ternary.group_by("distance_m")]
+def _by_distance(frames: pl.DataFrame, name: str) -> dict[float, Estimate]:
+    of_one = frames.filter(pl.col("filter") == name)
+    found = [(distance, recall(rows)) for (distance,), rows in of_one.group_by("distance_m")]
     return {distance: each for distance, each in sorted(found) if each is not None}
+
+
+@dataclass(frozen=True)
+class MappingStudy:
+    """How the mappings did against each other with one filter.
+
+    ``farther``, ``nearer``: settings and distances at which contrast finds the dock surely more,
+    or less, often than ternary does: their intervals lie apart.
+    """
+
+    study: Sweep
+    mappings: Sequence[str]
+    rows: Sequence[MappingRow]
+    farther: Sequence[str]
+    nearer: Sequence[str]
+
+
+def mapping_study(study: Sweep) -> MappingStudy:
+    """The table of a study, and where its mappings differ."""
+    rows = mapping_table(study)
+    farther, nearer = [], []
+    for row in rows:
+        contrast, ternary = (row.recall.get(name) for name in ("contrast", "ternary"))
+        if contrast is None or ternary is None:
+            continue
+        place = f"{row.setting} at {row.distance_m:g} m"
+        if contrast.low > ternary.high:
+            farther.append(place)
+        elif contrast.high < ternary.low:
+            nearer.append(place)
+    return MappingStudy(study, list(rows[0].recall), rows, farther, nearer)
 
 
 def tuning_table(out: Path) -> Mapping[str, Any]:

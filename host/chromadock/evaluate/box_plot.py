@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from chromadock.evaluate.formats import times
-from chromadock.evaluate.style import COLOURS, STYLE, WIDTH_IN, filters, legend
+from chromadock.evaluate.style import LOOKS, STYLE, WIDTH_IN, filters, legend, looks
 from chromadock.evaluate.summary import MISMATCHED, pixel_ratio
 
 WHISKERS = (5, 95)
@@ -46,7 +46,7 @@ def passed_box_plot(frames: pl.DataFrame, column: str = "passed") -> Figure:
         _groups(axes, rows, column, nothing)
         if column == "passed" and rows["water"][0] in MISMATCHED:
             axes.set_title(_RATIO_TITLE, loc="right", fontsize=9, fontweight="normal")
-    legend(figure, frames, lines=False)
+    legend(figure, looks(frames), lines=False)
     return figure
 
 
@@ -70,7 +70,7 @@ def _groups(axes: Axes, rows: pl.DataFrame, column: str, nothing: float) -> None
             shares = run.filter(pl.col("filter") == name)[column].to_numpy()
             if shares.size:
                 x = place + (i - (len(names) - 1) / 2) * width
-                _box(axes, x, np.maximum(shares, nothing), width, COLOURS[name])
+                _box(axes, x, np.maximum(shares, nothing), width, LOOKS[name].colour)
         if column == "passed":
             _tell_ratio(axes, place, run)
     axes.set_xlim(-0.6, len(runs) - 0.4)

@@ -12,7 +12,8 @@ from chromadock.evaluate import figures
 from chromadock.evaluate.box_plot import WHISKERS
 from chromadock.evaluate.frames import Sweep
 from chromadock.evaluate.gallery import Exhibit
-from chromadock.evaluate.style import svg
+from chromadock.evaluate.style import LOOKS, svg
+from chromadock.evaluate.tables import leading_filter
 
 _PASSED = (
     "logarithmic; fewer is better. Boxes are quartiles with the median, whiskers the "
@@ -54,7 +55,8 @@ def gallery(still: pl.DataFrame, exhibits: Sequence[Exhibit], svg: str = "") -> 
         "Single frames, and what passes",
         "Swatches: the water's colour as vehicle and dock see it, the same hue pure, and the "
         "marker colour that each works out of it alone. Rings are blobs, green where three of "
-        "them stand like three of the dock's markers.",
+        "them stand like three of the dock's markers; after the robust method, its markers and the "
+        "strongest other peaks.",
         still,
         svg,
         exhibits,
@@ -68,7 +70,7 @@ def measured(still: pl.DataFrame) -> Iterator[Drawing]:
         "Finding the dock, by distance",
         "Share of the frames showing all four markers in which all four were found, each within "
         "three pixels of the truth. Blobs, constellation and pose are the same after every "
-        f"filter. {_BARS}",
+        f"filter; the robust method has its own. {_BARS}",
         still,
         svg(figures.recall_by_distance(still), "recall"),
     )
@@ -101,4 +103,17 @@ def swept(sweep: Sweep) -> Drawing:
         f"in which the dock was found. {_BARS}",
         sweep.frames,
         svg(figures.sweep_plot(sweep), name),
+    )
+
+
+def compared(study: Sweep) -> Drawing:
+    """What the mappings do in each setting."""
+    name, used = "-".join(study.experiment.split()), leading_filter(study.frames)
+    return Drawing(
+        name,
+        f"{study.experiment[0].upper()}{study.experiment[1:]}",
+        f"Share of the frames in which the dock was found, {LOOKS[used].label}, by what dock and "
+        f"vehicle take for the marker's colour. {_BARS}",
+        study.frames,
+        svg(figures.mapping_plot(study), name),
     )

@@ -6,7 +6,7 @@
     rate_hz = 4.1667
     seed = 1
     mappings = ["ternary"]
-    filters = ["adaptive ternary", "static pool"]      # all of them if left out
+    filters = ["robust", "adaptive ternary"]  # all of them if left out
     photographs = "../photos"   # folder, in the place of rendered water; may be left out
 
     [set]                       # keys of the scene, for all runs

@@ -17,12 +17,19 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from chromadock.evaluate.box_plot import passed_box_plot
 from chromadock.evaluate.lines import FOUND, filter_lines, recall_lines
-from chromadock.evaluate.style import STYLE, WIDTH_IN, legend
+from chromadock.evaluate.mapping_plot import mapping_plot
+from chromadock.evaluate.style import STYLE, WIDTH_IN, legend, looks
 from chromadock.evaluate.summary import median_error
 from chromadock.evaluate.sweep_plot import sweep_plot
 from chromadock.evaluate.tables import scenarios
 
-__all__ = ["errors_by_distance", "passed_box_plot", "recall_by_distance", "sweep_plot"]
+__all__ = [
+    "errors_by_distance",
+    "mapping_plot",
+    "passed_box_plot",
+    "recall_by_distance",
+    "sweep_plot",
+]
 
 _ERRORS = (
     ("range_error", "range [% of range]", 100.0),
@@ -48,7 +55,7 @@ def recall_by_distance(frames: pl.DataFrame) -> Figure:
         _distance_axis(axes, rows)
     for axes in grid.flat[len(parts) :]:
         axes.remove()
-    legend(figure, frames, lines=True)
+    legend(figure, looks(frames), lines=True)
     return figure
 
 
@@ -71,7 +78,7 @@ def errors_by_distance(frames: pl.DataFrame) -> Figure:
         axes.set_title(title)
     for axes in grid[-1]:
         _distance_axis(axes, frames)
-    legend(figure, frames, lines=True)
+    legend(figure, looks(frames), lines=True)
     return figure
 
 

@@ -1,6 +1,7 @@
 """The filters that are compared: each makes a mask of the same frame.
 
-What follows the mask is the same for all: the paper's blobs, constellation and EPnP.
+What follows the mask is the same for all: the paper's blobs, constellation and EPnP.  Beside
+them stands the robust method, which has its own (``finders``).
 """
 
 from __future__ import annotations
@@ -26,11 +27,17 @@ INTENSITY = "intensity"
 the literature before colour (Knutson 2024, section II.B), whose blobs the Laplacian of
 Gaussian then looks for."""
 
-FILTERS = (*ADAPTIVE, *STATIC, INTENSITY)
+MASKS = (*ADAPTIVE, *STATIC, INTENSITY)
+"""Filters whose mask is all that they are."""
+
+ROBUST = "robust"
+"""The robust method with the run's own mapping; its mask is what stands out in that colour."""
+
+FILTERS = (ROBUST, *MASKS)
 
 
 def filter_mask(name: str, view: View, tuned: Tuned) -> NDArray[np.uint8]:
-    """The pixels that the filter ``name`` (one of FILTERS) lets pass, (H, W) uint8, 0 or 255."""
+    """The pixels that the filter ``name`` (one of MASKS) lets pass, (H, W) uint8, 0 or 255."""
     if name in ADAPTIVE:
         hue = view.marker_hues[ADAPTIVE[name]]
         observed = observed_colour(view.background.rgb, rgb_from_hsv(hue, 255, 255))

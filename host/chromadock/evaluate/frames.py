@@ -27,11 +27,16 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """All frames, those of experiments that varied no more than the place, and the sweeps."""
+    """All frames, and those of each kind of experiment.
+
+    ``still`` varied no more than the place; ``sweeps`` more; ``studies`` of mappings more, with
+    several mappings in each setting.
+    """
 
     frames: pl.DataFrame
     still: pl.DataFrame
     sweeps: list[Sweep]
+    studies: list[Sweep]
 
     @classmethod
     def read(cls, out: Path) -> Evaluation:
@@ -65,15 +70,18 @@ def read_frames(out: Path) -> pl.DataFrame:
     return frames
 
 
-def _split(frames: pl.DataFrame) -> tuple[pl.DataFrame, list[Sweep]]:
-    sweeps, still = [], []
+def _split(frames: pl.DataFrame) -> tuple[pl.DataFrame, list[Sweep], list[Sweep]]:
+    sweeps: list[Sweep] = []
+    studies: list[Sweep] = []
+    still = []
     for (experiment,), rows in frames.group_by("experiment", maintain_order=True):
         keys = varied_keys(rows)
         if keys:
-            sweeps.append(Sweep(str(experiment), keys, rows))
+            kind = studies if rows["mapping"].n_unique() > 1 else sweeps
+            kind.append(Sweep(str(experiment), keys, rows))
         else:
             still.append(rows)
-    return (pl.concat(still) if still else frames.clear()), sweeps
+    return (pl.concat(still) if still else frames.clear()), sweeps, studies
 
 
 def varied_keys(rows: pl.DataFrame) -> tuple[str, ...]:

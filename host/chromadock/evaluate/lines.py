@@ -8,7 +8,7 @@ import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
-from chromadock.evaluate.style import COLOURS, MARKS, filters
+from chromadock.evaluate.style import LOOKS, Look, filters
 from chromadock.evaluate.summary import Estimate, recall
 
 FOUND = "dock found [% of frames]"
@@ -18,6 +18,8 @@ Measure = Callable[[pl.DataFrame], Estimate | None]
 """What the rows of one filter come to."""
 
 _APART_IN = 0.035
+_MARGIN = 0.1
+"""Of the axes, on both sides: what stands aside of the first and the last point."""
 
 
 def recall_lines(axes: Axes, rows: pl.DataFrame, key: str, line: str = "-") -> None:
@@ -33,18 +35,20 @@ def filter_lines(
     """``measure`` of each filter, times ``unit``, against the numbers of ``key`` in their order."""
     for name in filters(rows):
         parts = list(rows.filter(pl.col("filter") == name).group_by(key, maintain_order=True))
-        points(axes, [x for (x,), _ in parts], [measure(p) for _, p in parts], name, unit, line)
+        points(
+            axes, [x for (x,), _ in parts], [measure(p) for _, p in parts], LOOKS[name], unit, line
+        )
 
 
 def points(
     axes: Axes,
     xs: Sequence[float],
     estimates: Sequence[Estimate | None],
-    name: str | None,
+    look: Look,
     unit: float,
     line: str = "-",
 ) -> None:
-    """Estimates times ``unit`` in the colour and mark of a filter, or black for None."""
+    """Estimates times ``unit`` in a colour with a mark, a little aside."""
     known = [
         (x, e.value * unit, (e.value - e.low) * unit, (e.high - e.value) * unit)
         for x, e in zip(xs, estimates, strict=True)
@@ -52,21 +56,21 @@ def points(
     ]
     if not known:
         return
-    order = list(COLOURS).index(name) - len(COLOURS) // 2 if name else 0
     x, y, below, above = zip(*known, strict=True)
     drawn = axes.errorbar(
         x,
         y,
         yerr=(below, above),
-        color=COLOURS[name] if name else "black",
-        marker=MARKS[name] if name else "o",
+        color=look.colour,
+        marker=look.mark,
         linestyle=line,
         linewidth=1.3,
         elinewidth=1.3,
-        # The first filters in front.
-        zorder=3 - order / 10,
+        # The first in front.
+        zorder=3 - look.place / 10,
     )
+    axes.margins(x=_MARGIN)
     # Beside each other, that none is hidden; afterwards, for the axes' limits are of the data.
-    aside = ScaledTranslation(order * _APART_IN, 0, axes.figure.dpi_scale_trans)
+    aside = ScaledTranslation(look.place * _APART_IN, 0, axes.figure.dpi_scale_trans)
     for artist in drawn.get_children():
         artist.set_transform(axes.transData + aside)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from chromadock.detection import Pose
 from chromadock.evaluate.target import Target
-from chromadock.paper.method import Found
+from chromadock.look import Found
 from chromadock.rotation import matrix_from_quaternion
 
 CORRECT_PX = 3.0

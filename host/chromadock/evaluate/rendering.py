@@ -8,7 +8,7 @@ from jinja2 import BaseLoader, Environment, PackageLoader, StrictUndefined
 
 from chromadock.evaluate import formats
 from chromadock.evaluate.gallery import Exhibit
-from chromadock.evaluate.style import LABELS
+from chromadock.evaluate.style import LOOKS
 
 
 def environment(loader: BaseLoader | None = None, *, markup: bool = True) -> Environment:
@@ -21,7 +21,7 @@ def environment(loader: BaseLoader | None = None, *, markup: bool = True) -> Env
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.filters.update(formats.FILTERS, label=LABELS.__getitem__)
+    made.filters.update(formats.FILTERS, label=lambda name: LOOKS[name].label)
     return made
 
 

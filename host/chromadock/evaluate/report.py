@@ -53,3 +53,5 @@ def _drawings(out: Path, evaluation: Evaluation) -> Iterator[Drawing]:
         yield from drawings.measured(evaluation.still)
     for sweep in evaluation.sweeps:
         yield drawings.swept(sweep)
+    for study in evaluation.studies:
+        yield drawings.compared(study)

@@ -7,6 +7,8 @@ their marks as well.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
@@ -15,22 +17,35 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-COLOURS = {
-    "adaptive ternary": "#D55E00",
-    "adaptive complement": "#E69F00",
-    "static pool": "#0072B2",
-    "static lake": "#56B4E9",
-    "intensity": "#7F7F7F",
-}
-MARKS = dict(zip(COLOURS, "osD^v", strict=True))
-LABELS = {
-    "adaptive ternary": "adaptive, ternary",
-    "adaptive complement": "adaptive, complement",
-    "static pool": "static, tuned to the pool",
-    "static lake": "static, tuned to the lake",
-    "intensity": "intensity and LoG",
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How one of several things is drawn: ``place`` in order, the first in front."""
+
+    colour: str
+    mark: str
+    label: str
+    place: int
+
+
+PLAIN = Look("black", "o", "", 0)
+
+LOOKS = {
+    "robust": Look("#009E73", "P", "robust method", -3),
+    "adaptive ternary": Look("#D55E00", "o", "adaptive, ternary", -2),
+    "adaptive complement": Look("#E69F00", "s", "adaptive, complement", -1),
+    "static pool": Look("#0072B2", "D", "static, tuned to the pool", 0),
+    "static lake": Look("#56B4E9", "^", "static, tuned to the lake", 1),
+    "intensity": Look("#7F7F7F", "v", "intensity and LoG", 2),
 }
 """Filters by name, in the order in which they are drawn."""
+
+MAPPING_LOOKS = {
+    "contrast": Look("#CC79A7", "D", "contrast", -1),
+    "ternary": Look("#D55E00", "o", "ternary", 0),
+    "complement": Look("#E69F00", "s", "complement", 1),
+}
+"""Mappings by name, likewise."""
 
 WIDTH_IN = 8.0
 
@@ -64,18 +79,23 @@ def svg(figure: Figure, name: str) -> str:
     return element[element.index("<svg") :]
 
 
+def looks(frames: pl.DataFrame) -> list[Look]:
+    """Of the filters that were used, in their order."""
+    return [LOOKS[name] for name in filters(frames)]
+
+
 def filters(frames: pl.DataFrame) -> list[str]:
     """Those of the known filters that were used, in their order."""
     used = set(frames["filter"].unique())
-    return [name for name in COLOURS if name in used]
+    return [name for name in LOOKS if name in used]
 
 
-def legend(figure: Figure, frames: pl.DataFrame, *, lines: bool) -> None:
-    """Name the filters above the axes, by lines with their marks or by patches."""
+def legend(figure: Figure, looks: Iterable[Look], *, lines: bool) -> None:
+    """Name what is drawn above the axes, by lines with their marks or by patches."""
     handles = [
-        Line2D([], [], color=COLOURS[name], marker=MARKS[name], label=LABELS[name])
+        Line2D([], [], color=look.colour, marker=look.mark, label=look.label)
         if lines
-        else Patch(color=COLOURS[name], label=LABELS[name])
-        for name in filters(frames)
+        else Patch(color=look.colour, label=look.label)
+        for look in looks
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=3)

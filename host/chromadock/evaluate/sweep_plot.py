@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from chromadock import method
 from chromadock.evaluate.frames import Sweep
 from chromadock.evaluate.lines import FOUND, points, recall_lines
-from chromadock.evaluate.style import STYLE, WIDTH_IN, legend
+from chromadock.evaluate.style import PLAIN, STYLE, WIDTH_IN, legend, looks
 from chromadock.evaluate.summary import hue_disagreement
 
 X = "x"
@@ -45,7 +45,7 @@ def sweep_plot(sweep: Sweep) -> Figure:
     highest = 1.0
     for (title, rows), (upper, lower) in zip(columns, grid.T, strict=True):
         hues = list(hue_disagreement(rows, [X]))
-        points(upper, [x for (x,), _ in hues], [hue for _, hue in hues], None, 1.0, line=line)
+        points(upper, [x for (x,), _ in hues], [hue for _, hue in hues], PLAIN, 1.0, line=line)
         highest = max(highest, *(hue.high for _, hue in hues))
         recall_lines(lower, rows, X, line)
         upper.set_title(title, fontsize=9, fontweight="normal")
@@ -61,7 +61,7 @@ def sweep_plot(sweep: Sweep) -> Figure:
         # Beyond it no marker of the dock's colour passes; often it lies above the axes.
         upper.axhline(method.HUE_WINDOW_DEG, color="0.5", linestyle="--", linewidth=1)
     grid[1, 0].set_ylabel(FOUND)
-    legend(figure, sweep.frames, lines=True)
+    legend(figure, looks(sweep.frames), lines=True)
     return figure
 
 

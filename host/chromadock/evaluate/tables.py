@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import polars as pl
 
+from chromadock.evaluate.filters import FILTERS
+from chromadock.evaluate.frames import Sweep
 from chromadock.evaluate.summary import (
     FRAME,
     MISMATCHED,
@@ -68,6 +70,45 @@ def recall_by_filter(frames: pl.DataFrame) -> dict[str, Estimate | None]:
     return {
         str(name): recall(rows) for (name,), rows in frames.group_by("filter", maintain_order=True)
     }
+
+
+@dataclass(frozen=True)
+class MappingRow:
+    """Recall with each mapping in one setting at one distance, where several were tried."""
+
+    setting: str
+    distance_m: float
+    recall: Mapping[str, Estimate | None]
+
+
+def mapping_table(study: Sweep) -> list[MappingRow]:
+    """A row for each setting and distance, of the leading filter."""
+    return [
+        MappingRow(
+            setting,
+            distance,
+            {
+                str(name): recall(part)
+                for (name,), part in at_one.group_by("mapping", maintain_order=True)
+            },
+        )
+        for setting, rows in settings_of(study)
+        for (distance,), at_one in rows.group_by("distance_m", maintain_order=True)
+    ]
+
+
+def leading_filter(frames: pl.DataFrame) -> str:
+    """The one that a study of mappings tells of: the first in order of those that were used."""
+    used = set(frames["filter"].unique())
+    return next(name for name in FILTERS if name in used)
+
+
+def settings_of(study: Sweep) -> Iterator[tuple[str, pl.DataFrame]]:
+    """What was varied beside distance and mapping, near distances first, of the leading filter."""
+    rows_of_one = study.frames.filter(pl.col("filter") == leading_filter(study.frames))
+    for setting, rows in rows_of_one.group_by(study.keys, maintain_order=True):
+        title = ", ".join(str(value) for value in setting)
+        yield title, rows.sort("distance_m", maintain_order=True)
 
 
 def places(frames: pl.DataFrame) -> Iterator[Place]:

@@ -12,9 +12,9 @@ from pathlib import Path
 import chromadock
 import chromadock_firmware
 
-_PACKAGES = ("colour", "link", "paper", "sim")
+_PACKAGES = ("colour", "link", "paper", "robust", "sim")
 _MODULES = (
-    *("filters", "measure", "picture", "plan", "runs", "target"),
+    *("filters", "finders", "measure", "picture", "plan", "runs", "target"),
     *("tuned", "tuning", "tuning_frames", "view", "work"),
 )
 """Of this package; the others tell and draw what these came to."""

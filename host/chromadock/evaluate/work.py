@@ -8,7 +8,7 @@ from typing import Any
 import cv2
 
 from chromadock.colour.hsv import degrees
-from chromadock.evaluate.filters import filter_mask
+from chromadock.evaluate.finders import Finders
 from chromadock.evaluate.measure import hue_difference_deg, measured
 from chromadock.evaluate.picture import frame_jpeg, mask_png, swatches_json
 from chromadock.evaluate.plan import Chunk, run_digest
@@ -16,10 +16,8 @@ from chromadock.evaluate.runs import Run
 from chromadock.evaluate.target import target_of
 from chromadock.evaluate.tuned import Tuned
 from chromadock.evaluate.view import Vehicle, View
-from chromadock.paper.method import PaperMethod
 from chromadock.sim.photograph import Photographs
 from chromadock.sim.simulation import Simulation, Step
-from chromadock.stopwatch import Stopwatch
 
 Row = dict[str, Any]
 Measured = tuple[list[Row], dict[str, bytes]]
@@ -43,8 +41,7 @@ def measured_chunk(chunk: Chunk, steps: Sequence[Step], tuned: Tuned) -> Measure
     """
     cv2.setNumThreads(1)
     run, simulation = chunk.run, _simulation(chunk.run)
-    camera, vehicle = run.scene.vehicle_camera.model, Vehicle()
-    paper = PaperMethod(run.scene.dock)
+    finders, vehicle = Finders(run.scene.dock, run.scene.vehicle_camera.model, tuned), Vehicle()
     for step in steps[chunk.warm_up : chunk.first]:
         vehicle.decide(simulation.frame(step).image_bgr, step.time_s)
     rows: list[Row] = []
@@ -56,8 +53,7 @@ def measured_chunk(chunk: Chunk, steps: Sequence[Step], tuned: Tuned) -> Measure
         shared = _shared(run, step, view)
         in_view = all(marker.in_view for marker in frame.truth.markers)
         for name in run.filters:
-            mask = filter_mask(name, view, tuned)
-            found = paper.find_in_mask(mask, camera, Stopwatch())
+            found, mask = finders.find(name, view, run.mapping)
             what = measured(found, mask, target)
             rows.append({**shared, "filter": name, **what, "markers_in_view": in_view})
             if step.index == chunk.sample:

@@ -6,7 +6,9 @@ import pytest
 from composites import CAMERA, DOCK, compose
 
 from chromadock import Detector
-from chromadock.evaluate.filters import ADAPTIVE, FILTERS, filter_mask
+from chromadock.colour.marker import MAPPINGS
+from chromadock.evaluate.filters import ADAPTIVE, MASKS, filter_mask
+from chromadock.evaluate.finders import Finders
 from chromadock.evaluate.tuned import Box, Tuned
 from chromadock.evaluate.tuning import Example, tune
 from chromadock.evaluate.view import Vehicle
@@ -23,7 +25,7 @@ def water(share: float, rng: np.random.Generator) -> np.ndarray:
 @pytest.mark.parametrize("name", list(ADAPTIVE))
 def test_an_adaptive_filter_is_the_detector_with_its_mapping(name: str) -> None:
     rng = np.random.default_rng(1)
-    detector, vehicle = Detector(CAMERA, DOCK, mapping=ADAPTIVE[name]), Vehicle()
+    detector, vehicle = Detector(CAMERA, DOCK, method="paper", mapping=ADAPTIVE[name]), Vehicle()
     passed = 0
     for i in range(12):
         frame = compose(water(i / 12, rng), 2.0, rng).frame_bgr
@@ -32,6 +34,26 @@ def test_an_adaptive_filter_is_the_detector_with_its_mapping(name: str) -> None:
         np.testing.assert_array_equal(mask > 0, detector.mask)
         passed += np.count_nonzero(mask)
     assert passed > 0
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS)
+def test_robust_is_the_detector_with_the_runs_own_mapping(mapping: str) -> None:
+    rng = np.random.default_rng(3)
+    detector, vehicle = Detector(CAMERA, DOCK, method="robust", mapping=mapping), Vehicle()
+    finders = Finders(DOCK, CAMERA, ANY)
+    found = 0
+    for i in range(4):
+        frame = compose(water(i / 4, rng), 2.0, rng, mapping=mapping).frame_bgr
+        expected = detector.process(frame, 0.3 * i)
+        got, mask = finders.find("robust", vehicle.view(frame, 0.3 * i), mapping)
+        np.testing.assert_array_equal(mask > 0, detector.mask)
+        assert (got.state, got.markers, got.pose) == (
+            expected.state,
+            expected.markers,
+            expected.pose,
+        )
+        found += got.state == "found"
+    assert found > 0
 
 
 def test_a_static_filter_passes_what_is_in_its_box_round_the_end_of_the_hues() -> None:
@@ -106,7 +128,7 @@ def test_markers_that_are_not_to_be_seen_leave_a_box_that_nothing_passes() -> No
 
 def test_every_filter_gives_a_mask_of_the_frames_size() -> None:
     view = Vehicle().view(np.zeros((30, 40, 3), np.uint8), 0.0)
-    for name in FILTERS:
+    for name in MASKS:
         mask = filter_mask(name, view, ANY)
         assert mask.shape == (30, 40)
         assert mask.dtype == np.uint8

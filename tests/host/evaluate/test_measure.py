@@ -7,7 +7,7 @@ import pytest
 from chromadock.detection import Pose
 from chromadock.evaluate.measure import hue_difference_deg, measured
 from chromadock.evaluate.target import Target
-from chromadock.paper.method import Found
+from chromadock.look import Found
 from chromadock.rotation import quaternion_from_matrix
 
 NAMES = ("a", "b", "c", "d")
@@ -20,7 +20,7 @@ def found(shift: np.ndarray, t=(0.0, 0, 4), R=None) -> Found:
     places = PIXELS + shift
     markers = {name: (float(x), float(y)) for name, (x, y) in zip(NAMES, places, strict=True)}
     rotation = np.eye(3) if R is None else R
-    return Found(0.0, (), markers, Pose(t, quaternion_from_matrix(rotation), 0.1))
+    return Found("found", 0.0, (), markers, Pose(t, quaternion_from_matrix(rotation), 0.1))
 
 
 def off(marker: int, pixels: float) -> np.ndarray:
@@ -43,7 +43,7 @@ def test_one_marker_decides_whether_a_dock_is_right_or_false(
 
 
 def test_no_dock_is_neither_right_nor_false() -> None:
-    row = measured(Found(0.0, (), None, None), EMPTY, TARGET)
+    row = measured(Found("not_found", 0.0), EMPTY, TARGET)
     assert not (row["found"] or row["correct"] or row["false_dock"])
     assert row["range_true_m"] == 4
 
@@ -61,7 +61,7 @@ def test_passed_pixels_count_outside_the_markers_circles_alone() -> None:
     mask = EMPTY.copy()
     mask[130, 90:111] = 255  # within 15 px of marker c
     mask[400, 0:10] = 255
-    row = measured(Found(0.0, (), None, None), mask, TARGET)
+    row = measured(Found("not_found", 0.0), mask, TARGET)
     assert row["passed"] == pytest.approx(31 / mask.size)
     assert row["passed_outside"] == pytest.approx(10 / mask.size)
 
@@ -69,7 +69,7 @@ def test_passed_pixels_count_outside_the_markers_circles_alone() -> None:
 def test_markers_behind_the_camera_or_far_aside_have_no_circle() -> None:
     pixels = np.array([(np.nan, np.nan), (1e9, 0), (-1e9, 3), (100, 100)])
     target = Target(NAMES, pixels, np.eye(3), np.array([0.0, 0, -4]), 15.0)
-    row = measured(Found(0.0, (), None, None), EMPTY + np.uint8(255), target)
+    row = measured(Found("not_found", 0.0), EMPTY + np.uint8(255), target)
     assert 0.99 < row["passed_outside"] < row["passed"] == 1
 
 

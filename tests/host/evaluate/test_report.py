@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 from chromadock import ChromadockError
+from chromadock.colour.marker import MAPPINGS
 from chromadock.evaluate import figures, filters, formats, style
 from chromadock.evaluate.frames import Evaluation
 from chromadock.evaluate.report import write_report
@@ -174,7 +175,7 @@ def test_hues_are_counted_once_a_frame(evaluation: Evaluation) -> None:
 
 def lines_in(axes: Axes, name: str) -> list[np.ndarray]:
     """What is drawn in a filter's colour."""
-    colour = style.COLOURS[name].lower()
+    colour = style.LOOKS[name].colour.lower()
     return [np.array(x.get_xydata()) for x in axes.lines if to_hex(x.get_color()) == colour]
 
 
@@ -206,7 +207,7 @@ def test_boxes_stand_at_the_shares_of_their_run(evaluation: Evaluation) -> None:
     (box,) = [
         patch
         for patch in pool.patches
-        if to_hex(patch.get_facecolor()) == style.COLOURS["static lake"].lower()
+        if to_hex(patch.get_facecolor()) == style.LOOKS["static lake"].colour.lower()
         and round(np.mean(patch.get_path().vertices[:4, 0])) == 2
     ]
     ys = box.get_path().vertices[:, 1]
@@ -238,9 +239,11 @@ def test_the_same_data_give_the_same_small_svg(evaluation: Evaluation) -> None:
 
 
 def test_all_filters_have_a_colour_a_mark_and_a_label() -> None:
-    for looks in (style.COLOURS, style.MARKS, style.LABELS):
-        assert tuple(looks) == filters.FILTERS
-        assert len(set(looks.values())) == len(looks)
+    assert tuple(style.LOOKS) == filters.FILTERS
+    assert set(style.MAPPING_LOOKS) == set(MAPPINGS)
+    for looks in (style.LOOKS, style.MAPPING_LOOKS):
+        for key in ("colour", "mark", "label", "place"):
+            assert len({getattr(look, key) for look in looks.values()}) == len(looks)
 
 
 def test_words_have_two_digits() -> None:
@@ -266,7 +269,7 @@ def test_the_page_needs_nothing_but_itself(out: Path) -> None:
 def test_the_page_says_of_every_figure_what_it_is(out: Path, evaluation: Evaluation) -> None:
     page = (out / "report.html").read_text()
     captions = re.findall(r"<figcaption>(.*?)</figcaption>", page, re.DOTALL)
-    assert len(captions) == page.count("<figure ") == 5 + 2
+    assert len(captions) == page.count("<figure ") == 5 + 2 + 1
     for caption in captions:
         assert "SIMULATED" in caption
         assert "seed 7, digest 0123456789abcdef" in caption

@@ -11,11 +11,12 @@ from pathlib import Path
 import polars as pl
 import pytest
 import results
+import results_approach
 import results_document
-from evaluation_data import write_evaluation
+from evaluation_data import FILTERS, write_evaluation
 from results_claims import Claim, claims
 from results_document import Run, document, figures
-from results_tables import realism, sweep_table
+from results_tables import mapping_study, realism, sweep_table
 
 from chromadock import ChromadockError
 from chromadock.evaluate import formats
@@ -53,13 +54,37 @@ def docs(run: Run, shown: dict[str, Drawing], tmp_path_factory: pytest.TempPathF
     return folder
 
 
+def test_approaches_have_their_section_and_figure_where_they_were_run(
+    run: Run, docs: Path, tmp_path: Path
+) -> None:
+    assert "## Approach" not in (docs / "results.md").read_text()
+    out = tmp_path / "out"
+    shutil.copytree(run.out, out)
+    rows = [
+        {
+            "scene": "pool", "scenario": "nothing else", "time_s": 0.1 * k, "range_m": 8 - 0.1 * k,
+            "markers_seen": 4, "contrast": 0.5, "frame_state": "found", "state": "tracking",
+            "measured": True, "marker_px": 0.5, "place_m": 0.02, "attitude_deg": 2.0,
+            "within_95": True,
+        }
+        for k in range(30)
+    ]  # fmt: skip
+    pl.DataFrame(rows).write_parquet(out / results_approach.ROWS)
+    again = Run.read(out)
+    text = document(again, figures(again))
+    assert text.count("## Approach") == 1
+    assert "| pool | nothing else | 0.0 s, 8.00 m | 0.0 s, 8.00 m | 100 % |" in text
+    assert "approach" in figures(again)
+    assert text.index("## Approach") < text.index("## Is the renderer")
+
+
 def of(out: Path, experiment: str) -> pl.DataFrame:
     return Evaluation.read(out).frames.filter(pl.col("experiment") == experiment)
 
 
 def test_every_figure_that_is_named_is_there_and_small_and_no_other(docs: Path) -> None:
     named = re.findall(r"!\[[^\]]*\]\(images/([^)]*)\)", (docs / "results.md").read_text())
-    assert len(named) == len(set(named)) == 8
+    assert len(named) == len(set(named)) == 9
     there = {path.name for path in (docs / "images").iterdir()}
     assert there == {*named, "wiring.svg"}
     for name in named:
@@ -71,7 +96,7 @@ def test_the_document_says_that_it_is_simulated_and_by_what(docs: Path) -> None:
     text = (docs / "results.md").read_text()
     assert "**All of this is simulated.**" in text
     captions = [line for line in text.splitlines() if line.startswith("*") and "**" not in line]
-    assert len(captions) == 8
+    assert len(captions) == 9
     assert all(line.startswith("*Simulated.") for line in captions)
     assert "| lake | 12 | 288 | 7 | `0123456789abcdef` |" in text
     assert "chromadock 0.1.0, jerlov 0.22.0." in text
@@ -81,7 +106,7 @@ def test_the_document_says_that_it_is_simulated_and_by_what(docs: Path) -> None:
 def test_tables_are_tables(docs: Path) -> None:
     lines = (docs / "results.md").read_text().splitlines()
     tables = [list(t) for bar, t in groupby(lines, lambda line: line.startswith("|")) if bar]
-    assert len(tables) == 9
+    assert len(tables) == 10
     for table in tables:
         assert len(table) > 2
         assert set(table[1]) == {"|", "-"}
@@ -95,10 +120,10 @@ def test_the_recall_in_the_table_is_that_of_the_frames(out: Path, docs: Path) ->
     (line,) = [
         line
         for line in (docs / "results.md").read_text().splitlines()
-        if line.startswith("| pool, ternary, 5 m |") and line.count("%") == 5
+        if line.startswith("| pool, ternary, 5 m |") and line.count("%") == 6
     ]
     for name, cell in zip(
-        ("adaptive ternary", "adaptive complement", "static pool", "static lake", "intensity"),
+        FILTERS,
         line.split("|")[2:],
         strict=False,
     ):
@@ -145,7 +170,8 @@ def test_a_sweep_tells_where_the_dock_is_lost(out: Path) -> None:
     key = tint.keys[0]
     frames = tint.frames.with_columns(correct=pl.col(key).is_between(0.8, 1.2))
     table = sweep_table(type(tint)(tint.experiment, tint.keys, frames))
-    assert table.found and table.lost == ["0.7", "1.3"]
+    assert set(table.verdicts) == set(FILTERS)
+    assert all(v.found and v.lost == ["0.7", "1.3"] for v in table.verdicts.values())
     assert [row.setting for row in table.rows] == [["0.7"], ["0.85"], ["1"], ["1.15"], ["1.3"]]
 
 
@@ -193,6 +219,32 @@ def test_every_disagreement_is_explained(
     for claim in wrong:
         (explained,) = [line for line in lines if line.startswith(f"**{claim.paper}**")]
         assert len(explained) > len(claim.paper) + 40
+
+
+def test_a_study_tells_where_contrast_is_better_and_where_it_is_not(out: Path, docs: Path) -> None:
+    (hues,) = Evaluation.read(out).studies
+    study = mapping_study(hues)
+    assert study.farther == ["brown at 7 m"] and study.nearer == ["green at 3 m"]
+    assert [(row.setting, row.distance_m) for row in study.rows] == [
+        ("brown", 3.0),
+        ("brown", 7.0),
+        ("green", 3.0),
+        ("green", 7.0),
+    ]
+    brown = study.rows[1].recall
+    assert brown["contrast"].value > 0.5 > brown["ternary"].value
+    text = (docs / "results.md").read_text()
+    assert "## Which mapping sees farther" in text
+
+
+def test_what_the_text_says_of_mappings_follows_the_frames(run: Run) -> None:
+    frames = run.evaluation.studies[0].frames
+    same = frames.with_columns(correct=pl.lit(True))
+    evaluation = replace(run.evaluation, studies=[replace(run.evaluation.studies[0], frames=same)])
+    alike = replace(run, evaluation=evaluation)
+    text = document(alike, figures(alike))
+    assert "nowhere here more often than ternary by more than chance" in text
+    assert "nowhere here less often by more than chance" in text
 
 
 def test_the_tuning_is_shown(docs: Path) -> None:

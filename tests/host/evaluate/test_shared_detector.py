@@ -106,7 +106,7 @@ def test_triangles_and_the_best_four_are_those_of_trying_all() -> None:
 
 def test_a_mask_of_any_filter_goes_the_detectors_way() -> None:
     seen = compose(np.full((480, 640, 3), (200, 150, 52), np.uint8), 2.0, np.random.default_rng(4))
-    detector = Detector(CAMERA, DOCK, independent=True)
+    detector = Detector(CAMERA, DOCK, method="paper", independent=True)
     detection = detector.process(seen.frame_bgr, 0.0)
     mask = np.where(detector.mask, 255, 0).astype(np.uint8)
     found = PaperMethod(DOCK).find_in_mask(mask, CAMERA, Stopwatch())

@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo results test hil soak bench fuzz lint format generate clean setup-demo
+.PHONY: help setup demo results test hil soak bench fuzz lint format generate contrast clean setup-demo setup-bench
 
 help: ## List these targets
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' Makefile | expand -t 12
@@ -31,7 +31,10 @@ hil: setup ## The hardware tests on the simulated dock; on a board: PORT=/dev/tt
 soak: setup ## Ten minutes of a simulated dock on a bad line; SOAK_SECONDS=20 for a short run
 	@$(VENV)/python tools/soak.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
 
-bench: setup ## Measure against the budgets: out/bench.json
+setup-bench:
+	@$(PYTHON) tools/setup bench
+
+bench: setup-bench ## Measure against the budgets: out/bench.json
 	@$(VENV)/python tools/bench.py
 
 fuzz: setup ## Five minutes of libFuzzer on the link's receiver
@@ -44,6 +47,10 @@ format: setup ## Format the Python and C sources
 	@$(VENV)/python tools/format.py
 
 generate: setup-demo ## Write tables and golden vectors from shared/method.toml
+	@$(VENV)/python shared/generate.py
+
+contrast: setup-demo ## Choose the mapping contrast anew from simulated waters, then the same
+	@$(VENV)/python shared/contrast.py
 	@$(VENV)/python shared/generate.py
 
 clean: ## Remove everything that was installed, built or written here

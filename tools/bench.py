@@ -8,63 +8,54 @@ from __future__ import annotations
 
 import json
 import sys
-from pathlib import Path
+from dataclasses import asdict
 from typing import Any
 
+import bench_tables
 import budgets
-from bench_host import SkippedError, host_ratios, resident_mib, simulator_ratios
-from rich.console import Console
-from rich.table import Table
+from bench_memory import long_runs, resident_mib
+from bench_peers import peer_ratios
+from bench_ratios import by_cost, detector_ratios
+from bench_scenes import LARGER, PHOTOGRAPHS, docks, enlarged, photographs, plain_water
+from bench_simulator import simulator_ratios
+from step import ROOT
 from xtensa import Measurement, measure
 from xtensa_build import MissingError, XtensaError
 
-RESULT = Path(__file__).resolve().parents[1] / "out" / "bench.json"
+RESULT = ROOT / "out" / "bench.json"
 
-MEMORY_BUDGETS = {
-    "code_bytes": ("code and tables", budgets.CODE_BYTES),
-    "ram_bytes": ("RAM", budgets.RAM_BYTES),
-    "stack_bytes": ("stack", budgets.STACK_BYTES),
-}
+WATER = "water"
 
-# Without a terminal nothing is cut off to fit one.
-console = Console(highlight=False, width=None if sys.stdout.isatty() else 120)
+console = bench_tables.console()
 
 
 def main() -> int:
     """Measure what can be measured here, and return the exit status."""
-    xtensa: dict[str, Any] = {}
-    host: dict[str, Any] = {"ratio_to_gaussian_blur": {}, "peers": {}}
     skipped: list[str] = []
-    failed = False
-    try:
-        measurement = measure()
-        xtensa = xtensa_figures(measurement)
-        show_instructions(measurement)
-        show_memory(xtensa)
-        for line in measurement.differences:
-            console.print(line, markup=False)
-        failed = bool(measurement.differences)
-    except MissingError as error:
-        skipped.append(f"Xtensa: {error}")
-    except XtensaError as error:
-        console.print(f"Xtensa: {error}", markup=False)
-        failed = True
-    try:
-        host["ratio_to_gaussian_blur"], left_out = host_ratios()
-        skipped += left_out
-        show_ratios(host["ratio_to_gaussian_blur"])
-        host["resident_mib"] = resident_mib()
-        text = judged(host["resident_mib"], budgets.RESIDENT_MIB, f"{host['resident_mib']:.0f}")
-        console.print(f"chromadock detect on VGA video: {text} of {budgets.RESIDENT_MIB} MiB")
-        host["simulator_ratio_to_gaussian_blur"] = simulator_ratios()
-        for scene, ratio in host["simulator_ratio_to_gaussian_blur"].items():
-            console.print(f"a simulated VGA frame, {scene}: {ratio:.0f} Gaussian blurs")
-    except SkippedError as error:
-        skipped.append(str(error))
+    xtensa, failed = measured_xtensa(skipped)
+    host = measured_host(skipped)
     for line in skipped:
         console.print(f"skipped: {line}", markup=False, soft_wrap=True)
     write({"xtensa": xtensa, "host": host})
     return 1 if failed else 0
+
+
+def measured_xtensa(skipped: list[str]) -> tuple[dict[str, Any], bool]:
+    """The dock: figures, and whether the run went wrong."""
+    try:
+        measurement = measure()
+    except MissingError as error:
+        skipped.append(f"Xtensa: {error}")
+        return {}, False
+    except XtensaError as error:
+        console.print(f"Xtensa: {error}", markup=False)
+        return {}, True
+    figures = xtensa_figures(measurement)
+    console.print(bench_tables.instructions_table(measurement))
+    console.print(bench_tables.bytes_table(figures))
+    for line in measurement.differences:
+        console.print(line, markup=False)
+    return figures, bool(measurement.differences)
 
 
 def xtensa_figures(measurement: Measurement) -> dict[str, Any]:
@@ -77,57 +68,84 @@ def xtensa_figures(measurement: Measurement) -> dict[str, Any]:
     }
 
 
-def judged(value: float, limit: float, text: str) -> str:
-    """Colour a figure that is over its limit."""
-    return f"[red]{text}[/red]" if value > limit else text
-
-
-def show_instructions(measurement: Measurement) -> None:
-    """Print the instructions, a stage a row, a frame a column."""
-    frames = measurement.instructions
-    table = Table(title="dockcore on Xtensa: instructions a QQVGA RGB565 frame")
-    table.add_column("stage")
-    for name in (*(frame.removesuffix("_qqvga") for frame in frames), "budget"):
-        table.add_column(name, justify="right")
-    for stage in frames[measurement.worst_frame]:
-        counts = [stages[stage] for stages in frames.values()]
-        if stage == "total":
-            table.add_section()
-            limit = budgets.INSTRUCTIONS_QQVGA
-            table.add_row(stage, *(judged(n, limit, f"{n:,}") for n in counts), f"{limit:,}")
-        else:
-            table.add_row(stage, *(f"{n:,}" for n in counts))
-    console.print(table)
-
-
-def show_memory(figures: dict[str, Any]) -> None:
-    """Print code, RAM and stack."""
-    table = Table(title="dockcore on Xtensa: bytes", caption="without libc and libgcc")
-    table.add_column("what")
-    table.add_column("used", justify="right")
-    table.add_column("budget", justify="right")
-    for key, (name, budget) in MEMORY_BUDGETS.items():
-        used = figures[key]
-        table.add_row(name, judged(used, budget, f"{used:,}"), f"{budget:,}")
-    console.print(table)
-
-
-def show_ratios(ratios: dict[str, float]) -> None:
-    """Print the ratios, a scene a row."""
-    stages = list(dict.fromkeys(name.split("/")[1] for name in ratios if "/" in name))
-    table = Table(
-        title="Detector.process, 640x480, one thread: times a 5x5 Gaussian blur",
-        caption=f"budget of the total on plain water: {budgets.BLUR_RATIO}, for later methods; "
-        "the paper's is here for comparison",
+def measured_host(skipped: list[str]) -> dict[str, Any]:
+    """The vehicle: ratios, peers and memory."""
+    host: dict[str, Any] = {}
+    host["ratio_to_gaussian_blur"], host["peers"] = measured_detector(skipped)
+    host["resident_mib"] = resident_mib()
+    text = bench_tables.judged(
+        host["resident_mib"], budgets.RESIDENT_MIB, f"{host['resident_mib']:.0f}"
     )
-    table.add_column("scene")
-    for column in (*stages, "total"):
-        table.add_column(column, justify="right")
-    for scene in (name for name in ratios if "/" not in name):
-        parts = [f"{ratios.get(f'{scene}/{stage}', 0.0):.2f}" for stage in stages]
-        total = ratios[scene]
-        table.add_row(scene, *parts, judged(total, budgets.BLUR_RATIO, f"{total:.2f}"))
-    console.print(table)
+    console.print(f"chromadock detect on VGA video: {text} of {budgets.RESIDENT_MIB} MiB")
+    runs = long_runs()
+    console.print(bench_tables.long_runs_table(runs))
+    host["long_runs"] = {kind: asdict(run) for kind, run in runs.items()}
+    host["simulator_ratio_to_gaussian_blur"] = simulator_ratios()
+    for scene, ratio in host["simulator_ratio_to_gaussian_blur"].items():
+        console.print(f"a simulated VGA frame, {scene}: {ratio:.0f} Gaussian blurs")
+    return host
+
+
+def measured_detector(skipped: list[str]) -> tuple[dict[str, float], dict[str, float]]:
+    """Ratios of the detector on all frames, and of its peers on one."""
+    ratios = detector_ratios({WATER: plain_water()})
+    rows: list[tuple[str, str, float | None]] = [(WATER, "plain water", budgets.BLUR_RATIO)]
+    real = photographs()
+    middle = plain_water()
+    if real:
+        seen = detector_ratios(real)
+        order = by_cost(seen)
+        median, worst = order[len(order) // 2], order[-1]
+        middle = real[median]
+        ratios |= seen
+        rows.append((median, f"median of {len(real)} photographs: {median}", None))
+        rows.append((worst, f"worst of them: {worst}", budgets.BLUR_RATIO_WORST))
+    else:
+        skipped.append(
+            f"real frames: no folder {PHOTOGRAPHS.relative_to(ROOT.parent)} beside this one"
+        )
+    with_dock = docks(middle)
+    ratios |= detector_ratios(with_dock)
+    rows += [(scene, f"{scene}, composited", None) for scene in with_dock]
+    ratios |= detector_ratios(larger := larger_frames(middle))
+    rows += [(scene, scene, limit_of(scene)) for scene in larger]
+    console.print(
+        bench_tables.ratios_table(
+            "Detector.process, robust, one thread: times a 5x5 Gaussian blur of the frame "
+            "(640x480 where not said; photographs of other sizes are scaled to it)",
+            ratios,
+            rows,
+        )
+    )
+    paper = "water, method paper"
+    ratios |= renamed(detector_ratios({WATER: plain_water()}, method="paper"), WATER, paper)
+    console.print(
+        bench_tables.ratios_table("the paper's method", ratios, [(paper, "plain water", None)])
+    )
+    scene, frame = next(iter(with_dock.items()))
+    peers, missing = peer_ratios(frame)
+    skipped += missing
+    console.print(bench_tables.peers_table(scene, ratios[scene], peers))
+    return ratios, peers
+
+
+def larger_frames(photograph: Any) -> dict[str, Any]:
+    """Plain water and a photograph at the larger sizes, by the scene's name."""
+    frames = {}
+    for size in LARGER:
+        frames[f"{WATER} {size[0]}x{size[1]}"] = plain_water(size)
+        frames[f"photograph {size[0]}x{size[1]}"] = enlarged(photograph, size)
+    return frames
+
+
+def limit_of(scene: str) -> float:
+    """The larger frame's budget is that of VGA."""
+    return budgets.BLUR_RATIO if scene.startswith(WATER) else budgets.BLUR_RATIO_WORST
+
+
+def renamed(ratios: dict[str, float], old: str, new: str) -> dict[str, float]:
+    """The same figures of a scene under another name."""
+    return {name.replace(old, new, 1): value for name, value in ratios.items()}
 
 
 def write(result: dict[str, Any]) -> None:
@@ -136,7 +154,7 @@ def write(result: dict[str, Any]) -> None:
     temporary = RESULT.with_suffix(".json.new")
     temporary.write_text(json.dumps(result, indent=2) + "\n")
     temporary.replace(RESULT)
-    console.print(f"written: {RESULT.relative_to(RESULT.parents[1])}")
+    console.print(f"written: {RESULT.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@ from __future__ import annotations
 from typing import Any
 
 import budgets
-from bench_host import resident_mib
+from bench_memory import resident_mib
 
 
 def test_detecting_in_a_vga_video_stays_within_the_memory_budget(record_property: Any) -> None:

@@ -1,4 +1,4 @@
-"""Sets up all that `make demo` or `make test` needs: python3 tools/setup {demo,test}."""
+"""Sets up all that a target needs: python3 tools/setup {demo,test,bench}."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import debian
 import environment
 import native_tests
 from paths import BUILD, LOG
-from report import SetupError, Unavailable
+from report import SetupError, Unavailable, say
 
 
 def main() -> int:
     """Do what is not done yet, and return the exit status."""
     parser = argparse.ArgumentParser(prog="tools/setup", description=__doc__)
-    parser.add_argument("what", choices=["demo", "test"])
+    parser.add_argument("what", choices=["demo", "test", "bench"])
     what = parser.parse_args().what
     try:
         with_lock(what)
@@ -33,8 +33,10 @@ def with_lock(what: str) -> None:
         fcntl.flock(lock, fcntl.LOCK_EX)
         LOG.unlink(missing_ok=True)
         set_up_demo()
-        if what == "test":
+        if what != "demo":
             set_up_tests()
+        if what == "bench":
+            set_up_bench()
 
 
 def set_up_demo() -> None:
@@ -54,6 +56,14 @@ def set_up_tests() -> None:
     debian.install_test_packages(unavailable)
     native_tests.set_up(unavailable)
     unavailable.save()
+
+
+def set_up_bench() -> None:
+    """Add what the detector is compared with; without it the comparison is skipped by name."""
+    try:
+        environment.install_peers()
+    except SetupError as error:
+        say(f"not available: peers of the bench: {error}")
 
 
 if __name__ == "__main__":

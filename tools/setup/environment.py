@@ -16,6 +16,7 @@ BINDING = ROOT / "firmware" / "bindings"
 DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
 OPENCV4 = BUILD / "opencv4"
 MAVPROXY = BUILD / "mavproxy"
+PEERS = BUILD / "bench"
 DIALECT = HOST / "chromadock" / "dialect.py"
 # What both packages generate their MAVLink code from, when they are built.
 MAVLINK = [ROOT / "shared" / "chromadock.xml", ROOT / "shared" / "mavlink.py"]
@@ -80,8 +81,13 @@ def install_mavproxy() -> None:
     install_beside(MAVPROXY, "MAVProxy")
 
 
+def install_peers() -> None:
+    """Put what the detector is compared with beside the environment, for `make bench` alone."""
+    install_beside(PEERS, "peers of the bench")
+
+
 def install_beside(folder: Path, title: str) -> None:
-    """Install a package without those it needs into a folder of its own."""
+    """Install packages without those they need into a folder of their own."""
     requirements = TOOLS / f"requirements-{folder.name}.txt"
     stamp = Stamp(folder, folder.name, [requirements, str(sys.version_info[:2])])
     if stamp.fresh():

@@ -2,7 +2,7 @@
 
 Each frame draws its own water (beam attenuation 0.25 to 1.35 /m, each channel up to a third
 off), struts and buoys about the dock, cores that clip, halos of forward-scattered light,
-shot and read noise and JPEG.  Stands in for the simulator until its photographs mode does.
+shot and read noise, a Bayer mosaic and JPEG.  It owes the simulator nothing.
 """
 
 from __future__ import annotations

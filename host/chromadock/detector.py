@@ -144,7 +144,8 @@ class Detector:
                 hue=(hue + self._hues.offset) % contract.HUE_RANGE,
                 priors=plan.priors,
                 everywhere=plan.everywhere,
-                incomplete=plan.incomplete,
+                # At a guessed hue three markers would say too little.
+                incomplete=plan.incomplete and not self._hues.offset,
             )
             found = self._method.find(look, watch)
             track = self._tracker.update(time_s, plan, found, camera, attitude)

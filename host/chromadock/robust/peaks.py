@@ -28,10 +28,10 @@ _MIN_ROUNDNESS = 0.35
 # A pole goes on to both sides of its peaks: the weaker side over the peak.  Neighbouring
 # markers stand on one side only; of true markers at 4 m one in a hundred has more.
 _MAX_RIDGE = 0.7
-# A lamp takes light away from no channel that it shines in; from others its dark holder may.
-# What is behind it is taken to be as dark as the second darkest of eight places about: a buoy
-# beside it may be brighter, and one place may be a dark edge.  Standard deviations of noise
-# that are let pass.
+# A lamp takes light away from no channel of what is behind it.  That is taken to be as dark as
+# the second darkest of eight places about: a buoy beside it may be brighter, and one place may
+# be a dark edge.  A lamp's dark holder takes some; but painted parts of a dock, which form
+# constellations of their own where this is let pass, take more.  Standard deviations of noise.
 _BEHIND = 1
 _MOST_MISSING = 3.0
 
@@ -83,7 +83,7 @@ def find_peaks(response: Response, scale: Scale) -> Peaks:
     row, column = rows[order[kept]], columns[order[kept]]
     added = gained(scale.light, row, column)
     per_channel = np.sqrt(np.diag(response.covariance))
-    good = (added > -_MOST_MISSING * per_channel)[:, response.shining].all(axis=1)
+    good = (added > -_MOST_MISSING * per_channel).all(axis=1)
     true = np.flatnonzero(good)[:MAX_PEAKS]
     kept, row, column = kept[true], row[true], column[true]
     cells = np.column_stack([column, row]) + shift[kept]

@@ -39,8 +39,6 @@ _ROW_STEP = 8
 _EDGE = 2.5
 # Variance of linear light that 8 bits leave in dark water: (2.2 * 0.05^1.2 / 255)^2 / 12.
 _QUANTUM = 5e-9
-# A channel is a lamp's own from this share of its brightest on.
-_SHINING = 0.3
 # The local noise is the mean of so many cells squared, ...
 _BLOCK = 8
 # ... at least that of almost all the frame, at most what markers themselves may raise it to.
@@ -69,13 +67,11 @@ class Response:
     """What the matched filter makes of a frame.
 
     ``weights`` (1, 3) float32, BGR: the filter, such that finest cells fluctuate by about 1;
-    ``covariance`` (3, 3), BGR: of their fluctuation, in linear light;
-    ``shining`` (3,): the channels, BGR, that the lamps shine in.
+    ``covariance`` (3, 3), BGR: of their fluctuation, in linear light.
     """
 
     weights: NDArray[np.float32]
     covariance: NDArray[np.float64]
-    shining: NDArray[np.bool_]
     scales: tuple[Scale, ...]
 
 
@@ -115,7 +111,7 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
         Scale(cell, light, *_against(centre, surround))
         for cell, light, centre in zip(cells, lights, centres, strict=True)
     )
-    return Response(weights, covariance, signature > _SHINING, scales)
+    return Response(weights, covariance, scales)
 
 
 def _halved(image: NDArray[_Number]) -> NDArray[_Number]:

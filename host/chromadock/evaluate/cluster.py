@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import signal
 import warnings
@@ -75,15 +76,21 @@ def remote_cluster(address: str, warn: Warn) -> Iterator[Client]:
         Where no scheduler answers, or it has no workers, or they lack this package.
     """
     _quiet_dask()
+    fault = ""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # told below, in a line
             client = Client(address, timeout=_CONNECT_S)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
+        fault = one_line(error, 80)
+    if fault:
+        # A client that came to nothing closes itself when it is collected, and waits for ever
+        # where that happens to be within the start of another: so now.
+        gc.collect()
         raise ChromadockError(
-            f"--scheduler {address}: nobody answers ({one_line(error, 80)}): "
+            f"--scheduler {address}: nobody answers ({fault}): "
             "start `dask scheduler` there, or leave the option out"
-        ) from None
+        )
     with client:
         _compare_versions(client, address, warn)
         yield client

@@ -17,7 +17,8 @@ both on photographs is in docs/robust.md."""
 LEAST_EVIDENCE = float(-np.log(FALSE_ALARM_RATE))
 
 HOPEFUL = LEAST_EVIDENCE - float(np.log(1.5))
-"""Evidence worth measuring for: exact places add a factor of three at most but rarely."""
+"""Evidence worth measuring for.  Exact places may add a factor of three, but to wait for that finds
+no more docks, and measuring is the dearest step."""
 
 # Of true docks one in a thousand has a larger reprojection error, in standard deviations:
 # 3.09 of a normal distribution.

@@ -12,7 +12,9 @@ from robust_composites import CAMERA, DOCK, composites, read
 from chromadock.colour.background import background_colour
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.working_image import smooth, working_image
+from chromadock.hue_search import OFFSET_STEP
 from chromadock.look import Found, Look
+from chromadock.method import HUE_RANGE
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
 
@@ -28,9 +30,10 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def look(method: RobustMethod, frame: np.ndarray) -> Found:
+def look(method: RobustMethod, frame: np.ndarray, off: int = 0) -> Found:
     seen = background_colour(smooth(working_image(np.ascontiguousarray(frame[..., ::-1]))))
-    return method.find(Look(frame, seen, marker_hue(seen, "ternary"), CAMERA), Stopwatch())
+    hue = (marker_hue(seen, "ternary") + off) % HUE_RANGE
+    return method.find(Look(frame, seen, hue, CAMERA), Stopwatch())
 
 
 def test_at_most_one_photograph_is_taken_for_a_dock(record_property: Any) -> None:
@@ -65,3 +68,17 @@ def test_recall_of_composited_markers(range_m: float, record_property: Any) -> N
     )
     assert recall >= LEAST_RECALL[range_m]
     assert error < 0.01
+
+
+def test_half_a_step_of_hue_off_a_dock_is_still_found(record_property: Any) -> None:
+    files, method = sorted((DATA / "backgrounds").glob("*.jpg")), RobustMethod(DOCK)
+    scenes = list(composites(files, 3.0, FRAMES_A_DISTANCE, SEED))
+    for off in (-OFFSET_STEP // 2, OFFSET_STEP // 2):
+        seen = [look(method, scene.frame_bgr, off) for scene in scenes]
+        recall = float(np.mean([f.state == "found" for f in seen]))
+        record_property(
+            "figure",
+            f"method robust, composited at 3 m, {off * 360 / HUE_RANGE:+.0f} degrees of hue off: "
+            f"recall {recall:.2f} of {len(scenes)} frames",
+        )
+        assert recall >= 0.9

@@ -19,8 +19,8 @@ from chromadock.colour.working_image import smooth, working_image
 from chromadock.detection import Background, Detection, Marker
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
-from chromadock.hue_search import HueSearch
-from chromadock.look import Look, Method
+from chromadock.hue_search import GUESS_DECADES, HueSearch
+from chromadock.look import Found, Look, Method
 from chromadock.paper.method import PaperMethod
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
@@ -148,8 +148,14 @@ class Detector:
                 incomplete=plan.incomplete and not self._hues.offset,
             )
             found = self._method.find(look, watch)
+            guessed = self._hues.offset != 0 and not plan.priors
+            if guessed and found.evidence is not None:
+                found = replace(found, evidence=found.evidence - GUESS_DECADES)
             track = self._tracker.update(time_s, plan, found, camera, attitude)
             self._hues.looked(found.markers is not None, track.pose is not None)
+            if guessed and track.pose is None:
+                # A dock of another colour is one only when several frames agree.
+                found = Found("not_found", found.passed_fraction, found.blobs)
             watch.lap("track")
         return Detection(
             state=found.state,

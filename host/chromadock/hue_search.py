@@ -8,6 +8,8 @@ the dock is found every second frame is given away.
 
 from __future__ import annotations
 
+import math
+
 from chromadock import method
 
 OFFSET_STEP = method.HUE_RANGE // 6
@@ -16,6 +18,10 @@ is found about as often as at its own (tests/host/robust/test_photographs.py pri
 
 # Nearest first: small disagreements are the usual ones.
 _OTHERS = (1, -1, 2, -2, 3)
+
+GUESS_DECADES = math.log10(1 + len(_OTHERS))
+"""Less evidence that a look at a guessed hue counts for: with so many hues to choose from clutter
+has as many chances."""
 
 HOLD_LOOKS = 12
 """Looks for which an offset that found something is kept: more than a lock takes."""

@@ -15,8 +15,8 @@ LOCK_SPAN_S = 0.1
 
 LOCK_EVIDENCE = 3.0
 """Decades, of the best frame: clutter has as much in less than one picture in 1000 (Markov's
-bound, see robust/acceptance.py; tests/host/track/test_detector.py prints the most that shaken views
-of real water come to).  The best, not the sum: frames of the same scene are no independent evidence."""
+bound, see robust/acceptance.py; tests/host/track/test_detector.py prints what shaken views of real
+water come to).  The best, not the sum: frames of one scene are no independent evidence."""
 
 LOCK_SHARE = 0.5
 """Of the looks since the first that found it: clutter that looks like a dock does so in one frame

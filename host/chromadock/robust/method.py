@@ -298,6 +298,11 @@ def _standing_out(response: Response) -> NDArray[np.uint8]:
 def _blobs(best: Constellation | None, peaks: dict[int, Peaks]) -> tuple[Blob, ...]:
     """The dock's markers, then the strongest peaks of the finest scale."""
     radius = FINEST_CELL / 2
-    mine = [] if best is None else [Blob(x, y, radius, True) for x, y in best.xy.tolist()]
-    others = peaks[FINEST_CELL].xy[: MAX_BLOBS - len(mine)].tolist()
-    return tuple(mine + [Blob(x, y, radius, False) for x, y in others])
+    others = peaks[FINEST_CELL].xy
+    mine: list[Blob] = []
+    if best is not None:
+        mine = [Blob(x, y, radius, True) for x, y in best.xy.tolist()]
+        apart = np.linalg.norm(others[:, None] - best.xy, axis=2).min(axis=1)
+        others = others[apart > 2 * FINEST_CELL]
+    rest = others[: MAX_BLOBS - len(mine)].tolist()
+    return tuple(mine + [Blob(x, y, radius, False) for x, y in rest])

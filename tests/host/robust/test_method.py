@@ -180,6 +180,8 @@ def test_markers_are_reported_as_blobs_before_others() -> None:
     assert found.markers is not None
     assert [b.accepted for b in found.blobs[:5]] == [True] * 4 + [False]
     assert [(b.x, b.y) for b in found.blobs[:4]] == list(found.markers.values())
+    for other in found.blobs[4:]:  # and not a second time among the others
+        assert all(np.hypot(other.x - b.x, other.y - b.y) > 4 for b in found.blobs[:4])
 
 
 @pytest.mark.parametrize("size", [(320, 240), (1280, 720)])

@@ -29,6 +29,7 @@ from robust_composites import ATTITUDE_DEG, CAMERA, compose, pose_in_view, read
 
 from chromadock import Detector, DockGeometry
 from chromadock.pose import Estimate, Sighting, estimates
+from chromadock.profile import widened
 
 PAGE = ROOT / "docs" / "geometry.md"
 FIVE = ROOT / "docs" / "five_marker_dock.toml"
@@ -105,7 +106,8 @@ def by_geometry(
     R, t, pixels = view(range_m, random(seed, range_m, index), dock(name))
     noise = random(seed, range_m, index, 1).normal(0, sigma_px, pixels.shape)
     sigma = np.full(len(pixels), sigma_px)
-    poses = estimates(Sighting(dock(name).points, pixels + noise, sigma, CAMERA))
+    sighting = Sighting(dock(name).points, pixels + noise, sigma, CAMERA)
+    poses = tuple(widened(sighting, pose) for pose in estimates(sighting))
     return errors(poses, R, t)
 
 

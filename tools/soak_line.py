@@ -50,6 +50,8 @@ class BadLine:
             if end is self._server:
                 self._client, _ = self._server.accept()
                 continue
+            if end not in (self._dock, self._client):
+                continue  # the client hung up while the dock's bytes were passed on
             data = end.recv(CHUNK)
             if end is self._client:
                 if not data:

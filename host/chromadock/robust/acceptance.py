@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from chromadock.pose import Estimate
 
-FALSE_ALARM_RATE = 0.02
+FALSE_ALARM_RATE = 0.003
 """Bound on the share of frames of Poisson clutter in which any set of peaks is taken for the
-dock.  It is Markov's, and so loose by far; real water is not quite Poisson.  What comes of
+dock.  It is Markov's, and so loose by far; but real water is not quite Poisson.  What comes of
 both on photographs is in docs/robust.md."""
 
 LEAST_EVIDENCE = float(-np.log(FALSE_ALARM_RATE))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.pose import Estimate, projected
+from chromadock.robust.chroma import Colours
 from chromadock.robust.clutter import Clutter
 from chromadock.robust.evidence import log_alike, placed_along
 from chromadock.robust.peaks import Peaks
@@ -28,11 +29,15 @@ _MAX_CHOICES = 64
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """``markers`` (k,) of the dock at ``members`` (k,) of the peaks, and the evidence."""
+    """``markers`` (k,) of the dock at ``members`` (k,) of the peaks, and the evidence.
+
+    ``expected`` (k, 2): pixels, where they were expected, if they were.
+    """
 
     markers: NDArray[np.intp]
     members: NDArray[np.intp]
     evidence: float
+    expected: NDArray[np.float64] | None = None
 
 
 def guided(
@@ -61,7 +66,9 @@ def guided(
     jacobian = derivatives.reshape(-1, 6)
     covariance = jacobian @ prior.covariance @ jacobian.T + sigma_px**2 * np.eye(2 * count)
     distances = np.linalg.norm(peaks.xy[:, None] - peaks.xy[None], axis=2)
-    clutter = Clutter.of(distances, float(camera.width * camera.height))
+    clutter = Clutter.of(distances, peaks.snr, float(camera.width * camera.height))
+
+    colours = Colours.of(peaks.chroma, peaks.snr, clutter.near)
 
     most = max(1, int(_MAX_CHOICES ** (1 / count)))
     options: list[list[int]] = []
@@ -89,6 +96,7 @@ def guided(
             evidence = chance + log_norm - 0.5 * off @ inverse @ off
             evidence += log_alike(peaks.snr[members][None], along[markers])[0]
             evidence += clutter.rarity_of(members[None])[0]
+            evidence += colours.log_common(members[None])[0]
             if best is None or evidence > best.evidence:
-                best = Guess(markers, members, float(evidence))
+                best = Guess(markers, members, float(evidence), expected[markers])
     return best

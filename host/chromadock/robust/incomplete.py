@@ -18,6 +18,11 @@ from chromadock.robust.peaks import Peaks
 from chromadock.robust.search import Search
 from chromadock.robust.shape import ShapeModel, ideal
 
+AMBIGUOUS = float(np.log(2))
+"""A name for the places must be so much likelier than any other: three markers with the fourth
+above one of them look like three with it below, turned a little.  Where that does not tell,
+nothing is found; the dock or the vehicle sways, and another frame will tell."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Part:
@@ -41,17 +46,27 @@ class Incomplete:
         self._searches: dict[int, list[Search]] = {}
 
     def find(self, cell: int, peaks: Peaks, sigma_px: float, least: float) -> Guess | None:
-        """The best set at one scale, if it has an evidence of ``least``."""
+        """The best set at one scale, if its evidence is ``least`` or more and not AMBIGUOUS."""
         if not self._parts or len(peaks.snr) < len(self._parts) - 1:
             return None
         if cell not in self._searches:
             self._searches[cell] = [Search(p.model, sigma_px, self._area) for p in self._parts]
         rarely = float(np.log(HIDDEN / len(self._parts)))
         places = ideal(peaks.xy, self._camera)
-        best: Guess | None = None
+        guesses: list[Guess] = []
         for part, search in zip(self._parts, self._searches[cell], strict=True):
-            found = search.find(places, peaks.snr, least - rarely)
-            if len(found.evidence) and (best is None or found.evidence[0] + rarely > best.evidence):
-                evidence = float(found.evidence[0]) + rarely
-                best = Guess(part.markers, found.members[0], evidence)
+            found = search.find(places, peaks.snr, peaks.chroma, least - rarely - AMBIGUOUS)
+            for members, evidence in zip(found.members, found.evidence.tolist(), strict=True):
+                guesses.append(Guess(part.markers, members, evidence + rarely))
+        best = max(guesses, key=lambda guess: guess.evidence, default=None)
+        if best is None or best.evidence < least:
+            return None
+        rivals = [g for g in guesses if g is not best and _shared(g, best) >= MIN_MARKERS - 1]
+        if any(g.evidence > best.evidence - AMBIGUOUS for g in rivals):
+            return None
         return best
+
+
+def _shared(a: Guess, b: Guess) -> int:
+    """How many places two guesses have both, by another name or not."""
+    return len(np.intersect1d(a.members, b.members))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice, product
 
 import cv2
 import numpy as np
@@ -17,12 +18,11 @@ from chromadock.pose import Estimate, Sighting, estimates, same_rotation
 from chromadock.pose import refined as refined_pose
 from chromadock.profile import widened
 from chromadock.robust.acceptance import HOPEFUL, LEAST_EVIDENCE, Constellation, rigid
-from chromadock.robust.evidence import log_alike
-from chromadock.robust.guided import guided
+from chromadock.robust.guided import Guess, guided
 from chromadock.robust.incomplete import Incomplete
 from chromadock.robust.peaks import MIN_SNR, Peaks, find_peaks
 from chromadock.robust.received import received_hue
-from chromadock.robust.refine import refined
+from chromadock.robust.refine import Tops, refined
 from chromadock.robust.response import FINEST_CELL, MIN_SIDE, Response, respond
 from chromadock.robust.search import Search
 from chromadock.robust.shape import ShapeModel, focal_px, ideal
@@ -113,13 +113,12 @@ class RobustMethod:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Candidate:
-    """Peaks at one scale, one for each marker."""
+    """Peaks at one scale, one for each marker; ``looks``: see ``search.Candidates``."""
 
     cell: int
     xy: NDArray[np.float64]
-    snr: NDArray[np.float64]
     noise: NDArray[np.float64]
-    rarity: float
+    looks: float
     evidence: float
 
 
@@ -156,28 +155,23 @@ class _View:
             return []
         if cell not in self._searches:
             self._searches[cell] = Search(self.model, _PEAK_ERROR * cell, self.area)
-        found = self._searches[cell].find(ideal(peaks.xy, self.camera), peaks.snr, HOPEFUL)
+        found = self._searches[cell].find(
+            ideal(peaks.xy, self.camera), peaks.snr, peaks.chroma, HOPEFUL
+        )
+        best = zip(found.members, found.looks.tolist(), found.evidence.tolist(), strict=True)
         return [
-            _Candidate(
-                cell, peaks.xy[members], peaks.snr[members], peaks.noise[members], rarity, evidence
-            )
-            for members, rarity, evidence in zip(
-                found.members[:MAX_TRIALS],
-                found.rarity.tolist(),
-                found.evidence.tolist(),
-                strict=False,
-            )
+            _Candidate(cell, peaks.xy[members], peaks.noise[members], looks, evidence)
+            for members, looks, evidence in islice(best, MAX_TRIALS)
         ]
 
     def evidence(
-        self, candidate: _Candidate, xy: NDArray[np.float64], sigma: NDArray[np.float64]
-    ) -> float:
-        """The evidence for exact places (n, 2) and their errors (n,)."""
+        self, looks: float, xy: NDArray[np.float64], sigma: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """(N,) evidence for exact places (N, n, 2) and their errors (N, n)."""
         order = list(self.model.order)
-        z = ideal(xy, self.camera)[order]
-        place = self.model.log_base(z[1:2] - z[:1])[0] + self.model.log_shape(z, sigma[order])
-        alike = log_alike(candidate.snr[None, order], self.model.along)[0]
-        return float(place - np.log(self.area) + alike + candidate.rarity)
+        z = ideal(xy.reshape(-1, 2), self.camera).reshape(sigma.shape)[:, order]
+        place = self.model.log_base(z[:, 1] - z[:, 0]) + self.model.log_shape(z, sigma[:, order])
+        return np.asarray(place - np.log(self.area) + looks)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -222,15 +216,7 @@ class _Measured:
                     guess.evidence,
                 ):
                     continue
-                members = guess.members
-                places = self._refined(found.xy[members], cell, found.noise[members])
-                if places is None:
-                    continue
-                sighting = Sighting(self.points[guess.markers], *places, self.view.camera)
-                poses = _near(sighting, priors)
-                if poses and rigid(poses[0], len(guess.markers)):
-                    wide = tuple(widened(sighting, pose) for pose in poses)
-                    best = Constellation(guess.markers, places[0], guess.evidence, wide)
+                best = self._partly(guess, cell, found, priors) or best
         return best
 
     def incomplete(self, peaks: dict[int, Peaks]) -> Constellation | None:
@@ -239,40 +225,66 @@ class _Measured:
         for cell, found in peaks.items():
             least = LEAST_EVIDENCE if best is None else best.evidence
             guess = self.view.incomplete.find(cell, found, _PEAK_ERROR * cell, least)
-            if guess is None:
-                continue
-            members = guess.members
-            places = self._refined(found.xy[members], cell, found.noise[members])
-            if places is None:
-                continue
-            sighting = Sighting(self.points[guess.markers], *places, self.view.camera)
-            poses = estimates(sighting)
-            if poses and rigid(poses[0], len(guess.markers)):
-                wide = tuple(widened(sighting, pose) for pose in poses)
-                best = Constellation(guess.markers, places[0], guess.evidence, wide)
+            if guess is not None:
+                best = self._partly(guess, cell, found) or best
         return best
 
     def _accepted(self, candidate: _Candidate) -> Constellation | None:
-        places = self._refined(candidate.xy, candidate.cell, candidate.noise)
-        if places is None:
+        tops = self._refined(candidate.xy, candidate.cell, candidate.noise)
+        if tops is None:
             return None
-        evidence = self.view.evidence(candidate, *places)
-        if evidence < LEAST_EVIDENCE:
+        xy, sigma = _choices(tops)
+        evidence = self.view.evidence(candidate.looks, xy, sigma)
+        best = int(evidence.argmax())
+        # So many places to choose from are so many chances for clutter.
+        sure = float(evidence[best] - np.log(len(evidence)))
+        if sure < LEAST_EVIDENCE:
             return None
-        sighting = Sighting(self.points, *places, self.view.camera)
-        poses = estimates(sighting)
-        if not poses or not rigid(poses[0], len(self.points)):
+        return self._posed(np.arange(len(self.points)), xy[best], sigma[best], sure, ())
+
+    def _partly(
+        self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
+    ) -> Constellation | None:
+        """What was guessed, measured: markers at the places that are nearest to the guess."""
+        found = peaks.xy[guess.members]
+        tops = self._refined(found, cell, peaks.noise[guess.members])
+        if tops is None:
+            return None
+        places = found if guess.expected is None else guess.expected
+        nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
+        xy, sigma = (np.array(values) for values in zip(*nearest, strict=True))
+        return self._posed(guess.markers, xy, sigma, guess.evidence, priors)
+
+    def _posed(
+        self,
+        markers: NDArray[np.intp],
+        xy: NDArray[np.float64],
+        sigma: NDArray[np.float64],
+        evidence: float,
+        priors: tuple[Estimate, ...],
+    ) -> Constellation | None:
+        """With all the poses that are left open; None where none is a rigid dock's."""
+        sighting = Sighting(self.points[markers], xy, sigma, self.view.camera)
+        poses = _poses(sighting, priors) if priors else estimates(sighting)
+        if not poses or not rigid(poses[0], len(markers)):
             return None
         wide = tuple(widened(sighting, pose) for pose in poses)
-        return Constellation(np.arange(len(self.points)), places[0], evidence, wide)
+        return Constellation(markers, xy, evidence, wide)
 
     def _refined(
         self, xy: NDArray[np.float64], cell: int, noise: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    ) -> list[Tops] | None:
         return refined(self.frame_bgr, xy, cell, self.response.weights, noise)
 
 
-def _near(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimate, ...]:
+def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """All ways to choose a place for each marker: (N, n, 2) places and their (N, n) errors."""
+    chosen = np.array(list(product(*(range(len(top.sigma)) for top in tops))))
+    xy = np.stack([top.xy[chosen[:, k]] for k, top in enumerate(tops)], 1)
+    return xy, np.stack([top.sigma[chosen[:, k]] for k, top in enumerate(tops)], 1)
+
+
+def _poses(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimate, ...]:
     """All the poses that markers leave open, from scratch and downhill of priors; best first.
 
     Three places fit up to four poses exactly, of which none is better than another.

@@ -50,11 +50,16 @@ class Peaks:
     ``xy`` (N, 2) float64: pixels of the frame.  ``snr`` (N,) float64: signal to noise of the
     brightest 2 x 2 cells about each: wherever in a cell a lamp falls, they catch its light.
     ``noise`` (N,) float64: standard deviation of the filtered light of cells thereabouts.
+    ``chroma`` (N, 2) float64: radians, see ``Response.chroma``.
     """
 
     xy: NDArray[np.float64]
     snr: NDArray[np.float64]
     noise: NDArray[np.float64]
+    chroma: NDArray[np.float64]
+
+
+_NONE = Peaks(np.empty((0, 2)), np.empty(0), np.empty(0), np.empty((0, 2)))
 
 
 def find_peaks(response: Response, scale: Scale) -> Peaks:
@@ -73,7 +78,7 @@ def find_peaks(response: Response, scale: Scale) -> Peaks:
     order = np.argsort(-snr, kind="stable")[:_MAX_SUMMITS]
     order = order[snr[order] >= least]
     if not len(order):
-        return Peaks(np.empty((0, 2)), np.empty(0), np.empty(0))
+        return _NONE
     at, near, centre = at[order], near[order], centre[order]
 
     shift, roundness = _paraboloid(centre, near)
@@ -85,11 +90,15 @@ def find_peaks(response: Response, scale: Scale) -> Peaks:
     per_channel = np.sqrt(np.diag(response.covariance))
     good = (added > -_MOST_MISSING * per_channel).all(axis=1)
     true = np.flatnonzero(good)[:MAX_PEAKS]
+    if not len(true):
+        return _NONE
     kept, row, column = kept[true], row[true], column[true]
     cells = np.column_stack([column, row]) + shift[kept]
     noise = np.asarray(scale.excess[row, column] / centre[kept], np.float64)
     xy = (cells + 0.5) * scale.cell - 0.5
-    return Peaks(np.asarray(xy, np.float64), snr[order[kept]].astype(np.float64), noise)
+    strength = snr[order[kept]].astype(np.float64)
+    chroma = response.chroma(scale, row, column)
+    return Peaks(np.asarray(xy, np.float64), strength, noise, chroma)
 
 
 def gained(
@@ -97,10 +106,11 @@ def gained(
 ) -> NDArray[np.float32]:
     """Light (N, 3) of cells beyond what is taken to be behind them, of (h, w, 3) light."""
     height, width = light.shape[:2]
-    y = np.clip(row[:, None] + _BORDER * _DOWN, 0, height - 1)
-    x = np.clip(column[:, None] + _BORDER * _ACROSS, 0, width - 1)
-    around = np.sort(light[y, x], axis=1)
-    return np.asarray(light[row, column] - around[:, _BEHIND], np.float32)
+    y = np.clip(row + _BORDER * _DOWN[:, None], 0, height - 1)
+    x = np.clip(column + _BORDER * _ACROSS[:, None], 0, width - 1)
+    around = light.reshape(-1, 3).take(y * width + x, axis=0)
+    around.sort(axis=0)
+    return np.asarray(light[row, column] - around[_BEHIND], np.float32)
 
 
 def _ring(stride: int, radius: int) -> NDArray[np.intp]:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -23,14 +27,24 @@ MAX_SHIFT = 8.0
 """A lamp's top is looked for within this of where it was supposed: steps; half the plateau of a
 lamp that fills its cells."""
 
-SAMPLING = 0.11
-"""Standard error in pixels that a sensor's colour mosaic leaves a small lamp of one colour: of
-red and of blue light it sees every fourth pixel."""
+SAMPLING = 0.17
+"""Standard error in pixels that a sensor's colour mosaic leaves the sharpest lamp: of red and of
+blue light it sees every fourth pixel."""
 FLOOR = 0.03
 """Standard error left to the brightest lamp, by the smoothing's width: what stands behind it
 is not flat, and shifts the top."""
 INFLATION = 1.4
 """True errors are so much larger than independent noise makes them: water's and JPEG's is not."""
+# Bend over height of a top at the least width, in steps: of a lamp that falls between the
+# mosaic's samples, and of one spread over several; the share of SAMPLING that is left then.
+_SHARP, _BLUNT, _LEAST_SAMPLING = 0.37, 0.1, 0.4
+
+MAX_TOPS = 3
+"""Places that a lamp is supposed in at most."""
+OTHER = 0.35
+"""Height of another top near a small lamp, of the highest's, that may be the lamp: a glint beside
+it or the edge of a strut may be the brighter one.  Which of them it is the whole dock tells."""
+_SMALL = 2  # widths at most that fit between the markers: then a top is a lamp, not a speck of one
 
 # Standard deviation of the slope of white noise so smoothed, for a width of 1: two Gaussians of
 # widths a and b have slopes of the covariance 1 / (2 pi (a^2 + b^2)^2).
@@ -39,13 +53,29 @@ _NOISE_SLOPE = float(
 )
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Tops:
+    """Where a lamp may be, the likeliest first.
+
+    ``xy`` (k, 2) pixels; ``sigma`` (k,): standard deviations in x as in y, pixels.
+    """
+
+    xy: NDArray[np.float64]
+    sigma: NDArray[np.float64]
+
+    def nearest(self, place: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+        """The one nearest to ``place`` (2,), pixels: its own place and error."""
+        k = int(np.linalg.norm(self.xy - place, axis=1).argmin())
+        return self.xy[k], float(self.sigma[k])
+
+
 def refined(
     frame_bgr: NDArray[np.uint8],
     xy: NDArray[np.float64],
     cell: int,
     weights: NDArray[np.float32],
     noise: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+) -> list[Tops] | None:
     """Subpixel places of n lamps.
 
     The light is smoothed by differences of Gaussians of growing width, the top nearby climbed
@@ -63,81 +93,151 @@ def refined(
 
     Returns
     -------
-    (n, 2) pixels and (n,) standard deviations in x as in y; None where one has no top.
+    n of them; None where one has no top, or none that says more than where it was supposed.
     """
     step = cell // FINEST_CELL
     apart = np.linalg.norm(xy[:, None] - xy[None], axis=2)
     np.fill_diagonal(apart, np.inf)
-    spacings = (apart.min(axis=1) / step).tolist()
-    tops = [
-        _top(frame_bgr, place, step, weights, spacing)
-        for place, spacing in zip(xy, spacings, strict=True)
-    ]
-    found = [top for top in tops if top is not None]
-    if len(found) < len(tops):
-        return None
-    places, per_noise, widths = (np.array(values) for values in zip(*found, strict=True))
-    # A cell is so many steps wide, and independent noise averages out by as much.
-    sigma = INFLATION * noise * FINEST_CELL * per_noise
-    return places, np.hypot(SAMPLING, step * np.hypot(FLOOR * widths, sigma))
+    found = []
+    for place, spacing, spread in zip(xy, apart.min(axis=1), noise, strict=True):
+        patch = _Patch.about(frame_bgr, place, step, weights, float(spacing) / step)
+        tops = _tops(patch)
+        if not tops:
+            return None
+        # A cell is so many steps wide, and independent noise averages out by as much.
+        per_noise = INFLATION * FINEST_CELL * float(spread)
+        places = _in_pixels(tops, patch.corner, step, per_noise)
+        if places.sigma[0] > MAX_SHIFT * step:
+            return None
+        found.append(places)
+    return found
 
 
-def _top(
-    frame_bgr: NDArray[np.uint8],
-    xy: NDArray[np.float64],
-    step: int,
-    weights: NDArray[np.float32],
-    spacing: float,
-) -> tuple[NDArray[np.float64], float, float] | None:
-    """The best located top near ``xy``: place, pixels; standard error, steps; width, steps.
+@dataclass(frozen=True, eq=False, slots=True)
+class _Top:
+    """``at`` (2,) steps in the patch; ``error``: standard, for noise of 1 a step; ``width``;
+    ``sharpness``: bend over height."""
 
-    The error is for light whose noise is 1 a step; ``spacing``: in steps, to the next marker.
-    """
-    reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
-    widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], WIDTH_PER_SPACING * spacing)]
-    side = int(reach + 3 * SURROUND * widths[-1]) + 2
-    centre = np.rint(xy)
-    across = (2 * side + 1) * step
-    corner = np.floor(centre) - across // 2
-    patch = cv2.getRectSubPix(frame_bgr, (across, across), (corner + (across - 1) / 2).tolist())
-    colour = linear(np.asarray(patch, np.uint8))
-    if step > 1:
-        colour = np.asarray(
-            cv2.resize(colour, (2 * side + 1,) * 2, interpolation=cv2.INTER_AREA), np.float32
-        )
-    light = filtered(colour, weights)
-    best = None
-    # The surround of a width is the smoothing of one two places on.
-    smoothed = _smoothed(light, len(widths) + 2)
-    for width, narrow, wide in zip(widths, smoothed, smoothed[2:], strict=False):
-        smooth = narrow - wide
-        at = _climbed(smooth, side, max(1, round(width)), reach)
-        if at is None:
-            continue
-        x, y = at
-        near = smooth[y - 1 : y + 2, x - 1 : x + 2].astype(np.float64)
-        slope = 0.5 * np.array([near[1, 2] - near[1, 0], near[2, 1] - near[0, 1]])
-        bend = 2 * near[1, 1] - np.array([near[1, 0] + near[1, 2], near[0, 1] + near[2, 1]])
-        if (bend <= 0).any():
-            continue
+    at: NDArray[np.float64]
+    error: float
+    width: float
+    sharpness: float
+
+    @classmethod
+    def of(cls, smooth: NDArray[np.float32], x: int, y: int, width: float) -> _Top | None:
+        """Through 3 x 3 values of the light as smoothed; None where they have no top."""
+        # Nine numbers: Python's own arithmetic is the faster.
+        (_, up, _), (left, height, right), (_, down, _) = smooth[
+            y - 1 : y + 2, x - 1 : x + 2
+        ].tolist()
+        across, along = 2 * height - left - right, 2 * height - up - down
+        if min(across, along, height) <= 0:
+            return None
         # A top moves by noise's slope over the bend.
-        error = float(_NOISE_SLOPE / (width**2 * bend.min()))
-        if best is not None and error >= best[1]:
+        error = _NOISE_SLOPE / (width**2 * min(across, along))
+        shift_x = min(max(0.5 * (right - left) / across, -1.0), 1.0)
+        shift_y = min(max(0.5 * (down - up) / along, -1.0), 1.0)
+        sharpness = 0.5 * (across + along) / height
+        return cls(np.array([x + shift_x, y + shift_y]), error, width, sharpness)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Patch:
+    """Filtered light about a lamp, smoothed; ``corner`` (2,): pixels, of its first step.
+
+    ``layers``: a difference of Gaussians for each of ``widths``.  ``middle``: index of the
+    supposed place, both ways; ``reach``: steps from it that the lamp may be.
+    """
+
+    corner: NDArray[np.float64]
+    layers: list[NDArray[np.float32]]
+    widths: list[float]
+    middle: int
+    reach: float
+
+    @classmethod
+    def about(
+        cls,
+        frame_bgr: NDArray[np.uint8],
+        xy: NDArray[np.float64],
+        step: int,
+        weights: NDArray[np.float32],
+        spacing: float,
+    ) -> _Patch:
+        """Of a lamp near ``xy``, pixels, whose nearest neighbour is ``spacing`` steps away."""
+        reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
+        widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], WIDTH_PER_SPACING * spacing)]
+        middle = int(reach + widths[-1]) + 2
+        around = middle + int(3 * SURROUND * widths[-1])
+        side = (2 * around + 1) * step
+        corner = np.floor(np.rint(xy)) - side // 2
+        pixels = cv2.getRectSubPix(frame_bgr, (side, side), (corner + (side - 1) / 2).tolist())
+        colour = linear(np.asarray(pixels, np.uint8))
+        if step > 1:
+            size = (2 * around + 1,) * 2
+            colour = np.asarray(cv2.resize(colour, size, interpolation=cv2.INTER_AREA), np.float32)
+        smoothers = _smoothers(middle, around, len(widths) + 2)
+        smoothed = smoothers @ filtered(colour, weights) @ smoothers.transpose(0, 2, 1)
+        # The surround of a width is the smoothing of one two places on.
+        layers = list(smoothed[:-2] - smoothed[2:])
+        return cls(corner + (around - middle) * step, layers, widths, middle, reach)
+
+
+@lru_cache
+def _smoothers(middle: int, around: int, count: int) -> NDArray[np.float32]:
+    """(count, 2 middle + 1, 2 around + 1): what smooths the rows of a patch by each of the first
+    ``count`` widths, and leaves its middle.  Sums over so few places take less time than to
+    filter all of the patch."""
+    off = np.arange(-around, around + 1) - np.arange(-middle, middle + 1)[:, None]
+    weights = np.exp(-0.5 * (off / np.array(WIDTHS[:count])[:, None, None]) ** 2)
+    return np.asarray(weights / weights.sum(axis=2, keepdims=True), np.float32)
+
+
+def _tops(patch: _Patch) -> list[_Top]:
+    """Where the lamp may be: the best located top uphill of the middle, then others about."""
+    best = None
+    sharpness = 0.0
+    for smooth, width in zip(patch.layers, patch.widths, strict=True):
+        summit = _climbed(smooth, patch.middle, max(1, round(width)), patch.reach)
+        top = None if summit is None else _Top.of(smooth, *summit, width)
+        if top is None:
             continue
-        offset = np.array(at) + np.clip(slope / bend, -1, 1)
-        best = corner + (offset + 0.5) * step - 0.5, error, width
-    return best
+        if width == WIDTHS[0]:
+            sharpness = top.sharpness
+        if best is None or top.error < best.error:
+            best = top
+    if best is None:
+        return []
+    tops = [replace(best, sharpness=sharpness)]
+    if len(patch.widths) <= _SMALL:
+        for top in _others(patch):
+            far = [np.hypot(*(top.at - other.at)) > WIDTHS[0] for other in tops]
+            if all(far) and len(tops) < MAX_TOPS:
+                tops.append(top)
+    return tops
 
 
-def _smoothed(light: NDArray[np.float32], count: int) -> list[NDArray[np.float32]]:
-    """The light smoothed by each of the first ``count`` widths, each on top of the one before."""
-    layers, before = [light], 0.0
-    for width in WIDTHS[:count]:
-        more = float(np.sqrt(width**2 - before**2))
-        size = 2 * round(3 * more) + 1
-        layers.append(np.asarray(cv2.GaussianBlur(layers[-1], (size, size), more), np.float32))
-        before = width
-    return layers[1:]
+def _others(patch: _Patch) -> Iterator[_Top]:
+    """All tops within reach at the least width, the highest first."""
+    smooth, width = patch.layers[0], patch.widths[0]
+    inside = slice(patch.middle - int(patch.reach), patch.middle + int(patch.reach) + 1)
+    window = smooth[inside, inside]
+    highest = cv2.dilate(smooth, np.ones((3, 3), np.uint8))[inside, inside]
+    rows, columns = np.nonzero((window >= highest) & (window > OTHER * window.max()))
+    for k in np.argsort(-window[rows, columns], kind="stable").tolist():
+        top = _Top.of(smooth, inside.start + int(columns[k]), inside.start + int(rows[k]), width)
+        if top is not None:
+            yield top
+
+
+def _in_pixels(tops: list[_Top], corner: NDArray[np.float64], step: int, noise: float) -> Tops:
+    """Tops of a patch, for light whose noise is ``noise`` a step."""
+    at = np.array([top.at for top in tops])
+    error, width, sharpness = np.array([(t.error, t.width, t.sharpness) for t in tops]).T
+    sharp = (sharpness - _BLUNT) / (_SHARP - _BLUNT) if step == 1 else np.zeros(len(tops))
+    sampling = SAMPLING * np.clip(sharp, _LEAST_SAMPLING, 1)
+    sigma = np.hypot(sampling, step * np.hypot(FLOOR * width, noise * error))
+    return Tops(corner + (at + 0.5) * step - 0.5, sigma)
 
 
 def _climbed(

@@ -35,7 +35,8 @@ _LINEAR = ((np.arange(256) / 255) ** GAMMA).astype(np.float32)
 _LAG = 2
 # Rows that the noise is measured on: one in so many; 2,300 cells fix six numbers to 3%.
 _ROW_STEP = 8
-# Differences beyond so many times the mean are edges, not noise: of noise one in a hundred.
+# Differences beyond so many times the mean are edges and lamps.  What fluctuates a little more than
+# noise, foam and caustics, counts: the filter had better be blind to its colour as well.
 _EDGE = 2.5
 # Variance of linear light that 8 bits leave in dark water: (2.2 * 0.05^1.2 / 255)^2 / 12.
 _QUANTUM = 5e-9
@@ -67,12 +68,28 @@ class Response:
     """What the matched filter makes of a frame.
 
     ``weights`` (1, 3) float32, BGR: the filter, such that finest cells fluctuate by about 1;
-    ``covariance`` (3, 3), BGR: of their fluctuation, in linear light.
+    ``across`` (2, 3), BGR: filters blind to the markers' colour, that fluctuate as much, each
+    for itself; ``covariance`` (3, 3), BGR: of the fluctuation of cells, in linear light;
+    ``surround`` (h, w, 3) float32: linear light in cells of SURROUND_CELL.
     """
 
     weights: NDArray[np.float32]
+    across: NDArray[np.float64]
     covariance: NDArray[np.float64]
+    surround: NDArray[np.float32]
     scales: tuple[Scale, ...]
+
+    def chroma(
+        self, scale: Scale, row: NDArray[np.intp], column: NDArray[np.intp]
+    ) -> NDArray[np.float64]:
+        """(N, 2) radians: how far the light that cells add is from the markers' colour."""
+        small, large = np.array(self.surround.shape[:2]), np.array(scale.snr.shape)
+        y, x = ((np.stack([row, column], 1) + 0.5) * small / large - 0.5).T.astype(np.float32)
+        behind = cv2.remap(self.surround, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        off = (scale.light[row, column] - behind[:, 0]) @ self.across.T
+        size = np.hypot(*off.T)
+        angle = np.arctan2(size, scale.excess[row, column])
+        return np.asarray(off * (angle / np.maximum(size, 1e-9))[:, None])
 
 
 def linear(image: NDArray[np.uint8]) -> NDArray[np.float32]:
@@ -104,14 +121,15 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
     for _ in cells[1:]:
         lights.append(_halved(lights[-1]))
     centres = [filtered(light, weights) for light in lights]
-    surround = centres[-1]
+    surround = lights[-1]
     for _ in range((SURROUND_CELL // cells[-1]).bit_length() - 1):
         surround = _halved(surround)
+    behind = filtered(surround, weights)
     scales = tuple(
-        Scale(cell, light, *_against(centre, surround))
+        Scale(cell, light, *_against(centre, behind))
         for cell, light, centre in zip(cells, lights, centres, strict=True)
     )
-    return Response(weights, covariance, scales)
+    return Response(weights, _across(covariance, weights), covariance, surround, scales)
 
 
 def _halved(image: NDArray[_Number]) -> NDArray[_Number]:
@@ -145,6 +163,13 @@ def _matched_filter(
     """
     whitened = np.linalg.solve(covariance, signature)
     return (whitened / np.sqrt(signature @ whitened)).astype(np.float32)[None]
+
+
+def _across(covariance: NDArray[np.float64], weights: NDArray[np.float32]) -> NDArray[np.float64]:
+    """(2, 3) filters whose noise is 1 and independent of each other's and of the weights'."""
+    root = np.linalg.cholesky(covariance)  # a filter f has noise |f root|
+    perpendicular = np.linalg.svd(weights @ root)[2][1:]
+    return np.asarray(np.linalg.solve(root.T, perpendicular.T).T)
 
 
 def _against(

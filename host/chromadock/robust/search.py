@@ -1,7 +1,7 @@
 """Constellations among peaks, ranked by the evidence that they are the dock.
 
-The evidence for a set of peaks is the log of its likelihood ratio: the density of such places
-and strengths if they are a dock's markers, over that if they are clutter.  Summed over all
+The evidence for a set of peaks is the log of its likelihood ratio: the density of such places,
+strengths and colours if they are a dock's markers, over that if they are clutter.  Summed over all
 sets of peaks of a Poisson clutter, these ratios are expected to come to one (Mecke's formula);
 so, by Markov's inequality, a frame without a dock has a set with a ratio of 1/e or more
 with a probability of at most e, however many sets there are to choose from.
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.robust.chroma import Colours
 from chromadock.robust.clutter import Clutter
 from chromadock.robust.evidence import STRONGEST, log_alike
 from chromadock.robust.shape import Complex, Real, ShapeModel, stacked
@@ -29,12 +30,12 @@ _NEAR = 11.8
 class Candidates:
     """``members`` (M, n): a peak for each marker; ``evidence`` (M,), best first.
 
-    ``rarity`` (M,): the part of the evidence that clutter's density has.
+    ``looks`` (M,): the part of the evidence that has nothing to do with where exactly they are.
     """
 
     members: NDArray[np.intp]
     evidence: Real
-    rarity: Real
+    looks: Real
 
 
 class Search:
@@ -51,26 +52,43 @@ class Search:
         self._steps = [_Step.of(model, k, noise) for k in range(len(model.order) - 2)]
         self._gain = self._best_gain()
 
-    def find(self, z: Complex, snr: Real, least: float) -> Candidates:
-        """Sets of peaks, given the strongest first, with an evidence of ``least`` or more."""
+    def find(self, z: Complex, snr: Real, chroma: Real, least: float) -> Candidates:
+        """Sets of peaks with an evidence of ``least`` or more.
+
+        Parameters
+        ----------
+        z : (N,) ideal pixels, the strongest first.
+        snr : (N,) signal to noise.
+        chroma : (N, 2) radians, see ``Response.chroma``.
+        """
         model, count = self._model, len(self._model.order)
         apart = z - z[:, None]
         distances = np.abs(apart)
-        clutter = Clutter.of(distances, self._area)
-
-        # The side is short, so few pairs of peaks can be one.  A base with it is worth following if
-        # it passes with the best of places, and with others as rare as the rarest of these three:
-        # rarer ones would be too unlike.
+        none = Candidates(np.empty((0, count), np.intp), np.empty(0), np.empty(0))
+        # The side is short, so few pairs of peaks can be one.
         p, third = np.nonzero(model.side.holds(apart, distances, self._slack))
+        if not len(p):
+            return none
+
+        # A base with it is worth following if it passes with the best of places, and with others
+        # as rare as the rarest of these three (rarer ones would be too unlike) and of the colour
+        # nearest to the first's.
+        clutter = Clutter.of(distances, snr, self._area)
+        colours = Colours.of(chroma, snr, clutter.near)
+        same = colours.most(aside=count - 1)
         rarity = clutter.rarity(aside=count - 1)
         rarest = np.maximum(np.maximum(rarity[p], rarity[third])[:, None], rarity)
         lengths = distances[p]
         hope = self._gain[np.minimum(lengths, len(self._gain) - 1).astype(np.intp)]
         hope += (rarity[p] + rarity[third])[:, None] + rarity + (count - 3) * rarest
+        nearest = same.max(axis=1, initial=0.0)
+        hope += same[p] + (same[p, third] + (count - 3) * nearest[p])[:, None]
         held = (hope >= least) & model.base.holds(apart[p], lengths, self._slack)
         pair, q = np.nonzero(held)
-        sets = _Sets.of(np.column_stack([p[pair], q]), apart, model)
-        sets = sets.extended(self._steps[0], apart, np.arange(len(pair)), third[pair], rarity)
+        if not len(pair):
+            return none
+        sets = _Sets.of(np.column_stack([p[pair], q]), apart, model, hope[pair, q])
+        sets = sets.extended(self._steps[0], apart, np.arange(len(pair)), third[pair], least)
         for step in self._steps[1:]:
             if not len(sets.members):
                 break
@@ -78,17 +96,16 @@ class Search:
             reach = np.abs(sets.ends) * step.reach[sets.span]
             off = apart[sets.members[:, 0]] - expected[:, None]
             parent, peak = np.nonzero(np.abs(off) < reach[:, None])
-            sets = sets.extended(step, apart, parent, peak, rarity)
+            sets = sets.extended(step, apart, parent, peak, least)
         if not len(sets.members):
-            return Candidates(np.empty((0, count), np.intp), np.empty(0), np.empty(0))
+            return none
 
-        rare = clutter.rarity_of(sets.members)
-        evidence = (
-            sets.place - np.log(self._area) + log_alike(snr[sets.members], model.along) + rare
-        )
+        looks = log_alike(snr[sets.members], model.along) + clutter.rarity_of(sets.members)
+        looks += colours.log_common(sets.members)
+        evidence = sets.place - np.log(self._area) + looks
         best = _best(evidence, int((evidence >= least).sum()))
         by_marker = np.argsort(model.order)
-        return Candidates(sets.members[best][:, by_marker], evidence[best], rare[best])
+        return Candidates(sets.members[best][:, by_marker], evidence[best], looks[best])
 
     def _best_gain(self) -> Real:
         """The most that evidence can exceed rarity, by the base's length in whole pixels."""
@@ -105,7 +122,8 @@ class _Sets:
     """Peaks taken for the first k markers of the model's order.
 
     ``members`` (M, k); ``ends`` (M,) and ``span`` (M,): the base and its span of sizes;
-    ``shape`` (M, k - 2); ``place`` (M,): log density of the places, the first's left out.
+    ``shape`` (M, k - 2); ``place`` (M,): log density of the places, the first's left out;
+    ``hope`` (M,): the most that the evidence may become.
     """
 
     members: NDArray[np.intp]
@@ -113,13 +131,17 @@ class _Sets:
     span: NDArray[np.intp]
     shape: Complex
     place: Real
+    hope: Real
 
     @classmethod
-    def of(cls, bases: NDArray[np.intp], apart: Complex, model: ShapeModel) -> _Sets:
-        """Bases (M, 2)."""
+    def of(cls, bases: NDArray[np.intp], apart: Complex, model: ShapeModel, hope: Real) -> _Sets:
+        """Bases (M, 2), and what may be hoped for if they pointed where they mostly do."""
         ends = apart[bases[:, 0], bases[:, 1]]
-        span = np.searchsorted(model.edges, np.abs(ends))
-        return cls(bases, ends, span, np.empty((len(bases), 0), complex), model.log_base(ends))
+        size = np.abs(ends)
+        place = model.log_base(ends)
+        hope = hope + place - model.log_base(size * model.base.direction)
+        none = np.empty((len(bases), 0), complex)
+        return cls(bases, ends, np.searchsorted(model.edges, size), none, place, hope)
 
     def extended(
         self,
@@ -127,20 +149,28 @@ class _Sets:
         apart: Complex,
         parent: NDArray[np.intp],
         peak: NDArray[np.intp],
-        rarity: Real,
+        least: float,
     ) -> _Sets:
-        """Sets ``parent`` (L,) with one more ``peak`` (L,) each, where it fits; MAX_SETS."""
+        """Sets ``parent`` (L,) with one more ``peak`` (L,) each, where that may still come to
+        ``least``; MAX_SETS."""
         b = apart[self.members[parent, 0], peak] / self.ends[parent]
-        density, near = step.judge(b, self.shape[parent], self.span[parent])
-        near &= (self.members[parent] != peak[:, None]).all(axis=1)
-        parent, peak, b, density = parent[near], peak[near], b[near], density[near]
-        place = self.place[parent] + density - 2 * np.log(np.abs(self.ends[parent]))
-        members = np.column_stack([self.members[parent], peak])
-        if len(members) > MAX_SETS:
-            best = _best(place + rarity[members].sum(axis=1), MAX_SETS)
-            parent, members, b, place = parent[best], members[best], b[best], place[best]
-        shape = np.column_stack([self.shape[parent], b])
-        return _Sets(members, self.ends[parent], self.span[parent], shape, place)
+        span = self.span[parent]
+        density, near = step.judge(b, self.shape[parent], span)
+        hope = self.hope[parent] + density - step.log_peak[span]
+        near &= (self.members[parent] != peak[:, None]).all(axis=1) & (hope >= least)
+        kept = np.flatnonzero(near)
+        if len(kept) > MAX_SETS:
+            kept = kept[_best(hope[kept], MAX_SETS)]
+        parent = parent[kept]
+        ends = self.ends[parent]
+        return _Sets(
+            np.column_stack([self.members[parent], peak[kept]]),
+            ends,
+            span[kept],
+            np.column_stack([self.shape[parent], b[kept]]),
+            self.place[parent] + density[kept] - 2 * np.log(np.abs(ends)),
+            hope[kept],
+        )
 
 
 @dataclass(frozen=True, slots=True)

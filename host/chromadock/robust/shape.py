@@ -110,28 +110,29 @@ class ShapeModel:
             -0.5 * angle**2 - np.log(spread * np.sqrt(2 * np.pi)) - 2 * np.log(np.abs(base))
         )
 
-    def log_shape(self, z: Complex, sigma_px: Real) -> float:
-        """Log density of n markers at ``z`` (n,), known to (n,) ``sigma_px``, given their base.
-
-        In square pixels to the power n - 2; ``z`` in the shape's order.
+    def log_shape(self, z: Complex, sigma_px: Real) -> Real:
+        """(N,) log density of sets of markers at ``z`` (N, n), known to ``sigma_px`` (N, n),
+        given their bases: in square pixels to the power n - 2; both in the shape's order.
         """
-        base = z[1] - z[0]
-        size = float(abs(base))
-        b = (z[2:] - z[0]) / base
-        span = int(np.searchsorted(self.edges, size))
+        base = z[:, 1] - z[:, 0]
+        size = np.abs(base)
+        b = (z[:, 2:] - z[:, :1]) / base[:, None]
+        span = np.searchsorted(self.edges, size)
         # b moves by (dz_m - (1 - b) dz_p - b dz_q) / base.
-        known = np.diag(sigma_px[2:] ** 2) + 0j
-        known += np.outer(1 - b, np.conj(1 - b)) * sigma_px[0] ** 2
-        known += np.outer(b, np.conj(b)) * sigma_px[1] ** 2
-        covariance = self.covariance[span].copy()
-        covariance[0::2, 0::2] += known.real / size**2
-        covariance[1::2, 1::2] += known.real / size**2
-        covariance[1::2, 0::2] += known.imag / size**2
-        covariance[0::2, 1::2] -= known.imag / size**2
-        off = stacked(b[None])[0] - self.mean[span]
-        density = -0.5 * off @ np.linalg.solve(covariance, off)
-        density -= 0.5 * np.linalg.slogdet(2 * np.pi * covariance)[1]
-        return float(density - 2 * len(b) * np.log(size))
+        by_p, by_q = (1 - b) * sigma_px[:, :1], b * sigma_px[:, 1:2]
+        known = by_p[:, :, None] * by_p.conj()[:, None] + by_q[:, :, None] * by_q.conj()[:, None]
+        own = np.arange(b.shape[1])
+        known[:, own, own] += sigma_px[:, 2:] ** 2
+        known /= size[:, None, None] ** 2
+        covariance = self.covariance[span]
+        covariance[:, 0::2, 0::2] += known.real
+        covariance[:, 1::2, 1::2] += known.real
+        covariance[:, 1::2, 0::2] += known.imag
+        covariance[:, 0::2, 1::2] -= known.imag
+        off = stacked(b) - self.mean[span]
+        square = (off * np.linalg.solve(covariance, off[..., None])[..., 0]).sum(axis=1)
+        log_norm = 0.5 * np.linalg.slogdet(2 * np.pi * covariance)[1]
+        return np.asarray(-0.5 * square - log_norm - 2 * b.shape[1] * np.log(size))
 
 
 def stacked(values: Complex) -> Real:

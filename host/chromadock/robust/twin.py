@@ -18,9 +18,15 @@ MAX_LEAN_RAD = np.radians(20.0)
 MAX_ENLARGEMENT = 1.15
 """Of the image: it is never larger, but measured with some error, and waves stretch it."""
 
+LEAST_SHARE = 0.5
+"""Of the image's evidence that what it is an image of has: it is never fainter, but struts may
+stand about it.  Clutter where an original might be is no reason to give a dock up."""
+
 
 def is_image_of(upper: Constellation, lower: Constellation, camera: CameraModel) -> bool:
     """Whether ``upper`` can be the image of ``lower`` in a level surface above."""
+    if lower.evidence < LEAST_SHARE * upper.evidence:
+        return False
     pose = lower.poses[0]
     base, tip = camera.project(np.array([pose.t, pose.t - 0.1 * pose.R[:, 1]]))
     up = tip - base

@@ -15,7 +15,10 @@ from chromadock.colour.working_image import smooth, working_image
 from chromadock.hue_search import OFFSET_STEP
 from chromadock.look import Found, Look
 from chromadock.method import HUE_RANGE
+from chromadock.robust.chroma import SPREAD
 from chromadock.robust.method import RobustMethod
+from chromadock.robust.response import respond
+from chromadock.robust.shape import focal_px
 from chromadock.stopwatch import Stopwatch
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"
@@ -82,3 +85,19 @@ def test_half_a_step_of_hue_off_a_dock_is_still_found(record_property: Any) -> N
             f"recall {recall:.2f} of {len(scenes)} frames",
         )
         assert recall >= 0.9
+
+
+@pytest.mark.parametrize("off", [0, OFFSET_STEP // 2])
+def test_markers_at_3_m_have_one_chroma_whatever_hue_is_looked_for(off: int) -> None:
+    files = sorted((DATA / "backgrounds").glob("*.jpg"))
+    spreads = []
+    for scene in composites(files, 3.0, len(files), SEED):
+        seen = background_colour(
+            smooth(working_image(np.ascontiguousarray(scene.frame_bgr[..., ::-1])))
+        )
+        hue = (marker_hue(seen, "ternary") + off) % HUE_RANGE
+        response = respond(scene.frame_bgr, hue, focal_px(CAMERA))
+        finest = response.scales[0]
+        column, row = np.floor((scene.pixels + 0.5) / finest.cell).astype(np.intp).T
+        spreads.append(response.chroma(finest, row, column).std(axis=0, ddof=1))
+    assert np.median(spreads) < SPREAD

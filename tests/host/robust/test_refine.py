@@ -44,8 +44,9 @@ def test_lamps_are_located_without_bias_however_much_they_clip(
         about = places + rng.uniform(-cell / 3, cell / 3, (2, 2))
         found = refined(frame, about, cell, seen(frame).weights, np.ones(2) * cell / 4)
         assert found is not None
-        errors.append(found[0] - places)
-        pulls.append((found[0] - places) / found[1][:, None])
+        off = np.array([tops.xy[0] for tops in found]) - places
+        errors.append(off)
+        pulls.append(off / np.array([tops.sigma[0] for tops in found])[:, None])
     errors = np.concatenate(errors)
     assert np.sqrt((errors**2).mean()) < most_px
     assert np.abs(errors.mean(axis=0)) == pytest.approx(0, abs=most_px / 2)
@@ -58,7 +59,36 @@ def test_neighbours_do_not_melt_into_one() -> None:
     frame = frame_with(places, 0.5, 0.4, rng)
     found = refined(frame, places + 0.8, 4, seen(frame).weights, np.ones(2))
     assert found is not None
-    assert found[0] == pytest.approx(places, abs=0.5)
+    assert np.array([tops.xy[0] for tops in found]) == pytest.approx(places, abs=0.5)
+
+
+def test_a_lamp_beside_a_glint_is_among_the_places() -> None:
+    """Two small lamps; the glint beside the first is the brighter of the two."""
+    rng = np.random.default_rng(3)
+    places, glint = np.array([(100.0, 70.0), (100.0, 87.0)]), np.array([(104.5, 66.0)])
+    dim = frame_with(places, 0.5, 0.3, rng).astype(int)
+    bright = frame_with(glint, 0.5, 0.45, rng).astype(int)
+    frame = np.maximum(dim, bright).astype(np.uint8)
+    about = np.array([(103.0, 68.0), (100.5, 87.5)])
+    found = refined(frame, about, 4, seen(frame).weights, np.ones(2))
+    assert found is not None
+    first, second = found
+    assert np.linalg.norm(first.xy - places[0], axis=1).min() < 0.7
+    assert np.linalg.norm(first.xy - glint[0], axis=1).min() < 0.7
+    assert first.nearest(places[0])[0] == pytest.approx(places[0], abs=0.7)
+    assert len(second.xy) == 1
+
+
+def test_a_sharp_lamp_of_one_colour_is_known_less_well_than_a_blunt_one() -> None:
+    """It falls between the pixels of its colour in the sensor's mosaic."""
+    rng = np.random.default_rng(4)
+    places = np.array([(60.0, 80.0), (80.0, 80.0)])
+    sharp, blunt = (
+        refined(frame, places, 4, seen(frame).weights, np.full(2, 0.01))
+        for frame in (frame_with(places, radius, 1.0, rng) for radius in (0.2, 3.0))
+    )
+    assert sharp is not None and blunt is not None
+    assert sharp[0].sigma[0] > 1.5 * blunt[0].sigma[0]
 
 
 def test_where_no_lamp_is_near_there_is_no_place() -> None:

@@ -9,6 +9,7 @@ import pytest
 from chromadock import CameraModel, DockGeometry
 from chromadock.pose import Sighting, estimates
 from chromadock.robust.acceptance import rigid
+from chromadock.robust.chroma import Colours
 from chromadock.robust.clutter import Clutter
 from chromadock.robust.evidence import SLOPE, SPREAD, STRONGEST, log_alike, placed_along
 from chromadock.robust.method import MAX_TRIALS
@@ -52,6 +53,16 @@ def among(
     return both[order], strengths[order], np.argsort(order)[: len(markers)]
 
 
+def colours(
+    snr: np.ndarray, rng: np.random.Generator, markers: np.ndarray | None = None
+) -> np.ndarray:
+    """Chroma: of all kinds for specks, of one for ``markers`` among them."""
+    chroma = rng.normal(0, 0.6, (len(snr), 2))
+    if markers is not None:
+        chroma[markers] = rng.normal(0, 0.3, 2) + rng.normal(0, 0.1, (len(markers), 2))
+    return chroma
+
+
 @pytest.mark.parametrize("points", [RECTANGLE, FIVE])
 @pytest.mark.parametrize("range_m", [1.5, 3.0, 4.0])
 def test_the_dock_is_the_best_rigid_candidate_among_specks(
@@ -64,7 +75,7 @@ def test_the_dock_is_the_best_rigid_candidate_among_specks(
         noise = rng.normal(0, 0.3, (len(points), 2)) @ np.array([1, 1j])
         markers = dock(points, range_m, rng) + noise
         z, snr, places = among(markers, 15.0, *clutter(40, rng))
-        found = search(len(points)).find(z, snr, 0.0)
+        found = search(len(points)).find(z, snr, colours(snr, rng, places), 0.0)
         rigid_ones = [m for m in found.members[:MAX_TRIALS] if is_rigid(points, z[m], 0.3)]
         assert rigid_ones[0].tolist() == places.tolist()
         assert found.evidence[0] > np.log(100)
@@ -82,9 +93,11 @@ def test_nothing_better_is_overlooked() -> None:
     model = MODELS[4]
     for _ in range(6):
         markers = dock(RECTANGLE, rng.uniform(2, 4), rng)
-        z, snr, _ = among(markers, 8.0, *clutter(5, rng))
-        found = search(4).find(z, snr, -20.0)
-        near = Clutter.of(np.abs(z[:, None] - z), AREA)
+        z, snr, places = among(markers, 8.0, *clutter(5, rng))
+        chroma = colours(snr, rng, places)
+        found = search(4).find(z, snr, chroma, -20.0)
+        near = Clutter.of(np.abs(z[:, None] - z), snr, AREA)
+        alike = Colours.of(chroma, snr, near.near)
         order = list(model.order)
         every = np.array([p for p in permutations(range(len(z)), 4)])
         base = z[every[:, order[1]]] - z[every[:, order[0]]]
@@ -92,9 +105,10 @@ def test_nothing_better_is_overlooked() -> None:
         best = max(
             (
                 model.log_base(z[m[order[1]]] - z[m[order[0]]])
-                + model.log_shape(z[m][order], np.full(4, SIGMA_PX))
+                + model.log_shape(z[m][order][None], np.full((1, 4), SIGMA_PX))[0]
                 + log_alike(snr[m][order][None], model.along)[0]
                 + near.rarity_of(m[None])[0]
+                + alike.log_common(m[None])[0]
                 - np.log(AREA),
                 m.tolist(),
             )
@@ -108,7 +122,8 @@ def test_clutter_is_taken_for_the_dock_no_more_often_than_stated(record_property
     rng = np.random.default_rng(3)
     frames, evidence = 400, []
     for _ in range(frames):
-        found = search(4).find(*clutter(int(rng.integers(10, 60)), rng), np.log(3))
+        z, snr = clutter(int(rng.integers(10, 60)), rng)
+        found = search(4).find(z, snr, colours(snr, rng), np.log(3))
         evidence.append(found.evidence[0] if len(found.evidence) else -np.inf)
     for ratio in (3, 10, 30):
         share = np.mean(np.array(evidence) >= np.log(ratio))
@@ -121,8 +136,9 @@ def test_clutter_is_taken_for_the_dock_no_more_often_than_stated(record_property
 
 @pytest.mark.parametrize("count", [0, 1, 3, 4])
 def test_few_peaks_are_no_error(count: int) -> None:
-    z, snr = clutter(count, np.random.default_rng(count))
-    assert len(search(4).find(z, snr, 0.0).evidence) == 0
+    rng = np.random.default_rng(count)
+    z, snr = clutter(count, rng)
+    assert len(search(4).find(z, snr, colours(snr, rng), 0.0).evidence) == 0
 
 
 def test_a_dock_upside_down_is_none() -> None:
@@ -132,8 +148,9 @@ def test_a_dock_upside_down_is_none() -> None:
     upright, mirrored = dock(tall, 2.0, rng), dock(tall * (1, -1, 1), 2.0, rng)
     one = Search(model, SIGMA_PX, AREA)
     for places, least in ((upright, 1), (mirrored, 0)):
-        z, snr, _ = among(places, 20.0, *clutter(10, rng))
-        assert min(1, len(one.find(z, snr, np.log(30)).evidence)) == least
+        z, snr, markers = among(places, 20.0, *clutter(10, rng))
+        found = one.find(z, snr, colours(snr, rng, markers), np.log(300))
+        assert min(1, len(found.evidence)) == least
 
 
 def test_likeness_is_the_integral_over_the_common_strength_and_the_slope() -> None:
@@ -171,16 +188,30 @@ def test_rarity_is_one_over_the_density_of_clutter() -> None:
     totals = []
     for _ in range(30):
         z, snr = clutter(64, rng)
-        near = Clutter.of(np.abs(z[:, None] - z), AREA)
+        near = Clutter.of(np.abs(z[:, None] - z), snr, AREA)
         expected = 2 * 64 / AREA * (MIN_SNR / snr) ** 2  # the tail's derivative by log strength
         totals.append(np.exp(-near.rarity(0))[32:] / expected[32:])
     assert np.mean(totals) == pytest.approx(1, abs=0.25)
 
 
 def test_members_are_not_each_others_clutter() -> None:
-    z, _ = clutter(6, np.random.default_rng(7))
+    z, snr = clutter(6, np.random.default_rng(7))
     close = np.concatenate([np.zeros(4), z])
-    near = Clutter.of(np.abs(close[:, None] - close), AREA)
-    alone = Clutter.of(np.zeros((1, 1)), AREA)
+    near = Clutter.of(np.abs(close[:, None] - close), np.append(np.full(4, snr[0]), snr), AREA)
+    alone = Clutter.of(np.zeros((1, 1)), np.array([MIN_SNR]), AREA)
     together = near.rarity_of(np.array([[0, 1, 2, 3]]))
     assert together == pytest.approx(4 * alone.rarity(0))
+
+
+def test_what_outshines_all_clutter_is_the_rarer_for_it_to_a_limit() -> None:
+    z, _ = clutter(6, np.random.default_rng(8))
+    apart = np.abs(z[:, None] - z)
+    rarity = [
+        Clutter.of(apart, np.array([10.0 * times, 10, 9, 8, 7, 6]), AREA).rarity_of(ONE)[0]
+        for times in (1, 2, 100, 1000)
+    ]
+    assert rarity[1] - rarity[0] == pytest.approx(np.log(4), abs=0.2)
+    assert rarity[0] < rarity[1] < rarity[2] == pytest.approx(rarity[3])
+
+
+ONE = np.array([[0]])

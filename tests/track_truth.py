@@ -10,6 +10,7 @@ import numpy as np
 from chromadock import CameraModel, DockGeometry
 from chromadock.look import Found
 from chromadock.pose import Sighting, estimates
+from chromadock.track.candidate import LOCK_EVIDENCE
 from chromadock.track.sight import Sight
 
 CAMERA = CameraModel.nominal(640, 480)
@@ -41,7 +42,7 @@ def pixels(pose: Pose, rng: np.random.Generator, names: tuple[str, ...] = DOCK.n
 def found(
     pose: Pose,
     rng: np.random.Generator,
-    evidence: float = 4.0,
+    evidence: float = LOCK_EVIDENCE + 1.5,
     names: tuple[str, ...] = DOCK.names,
 ) -> Found:
     """What a method would report; its noise is that of the pixels."""

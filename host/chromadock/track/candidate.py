@@ -13,21 +13,23 @@ LOCK_FRAMES = 3
 LOCK_SPAN_S = 0.1
 """Between the first and the last of them: a glint lasts a few hundredths of a second."""
 
-LOCK_EVIDENCE = 3.0
-"""Decades, of the best frame: clutter has as much in less than one picture in 1000 (Markov's
-bound, see robust/acceptance.py; tests/host/track/test_detector.py prints what shaken views of real
-water come to).  The best, not the sum: frames of one scene are no independent evidence."""
+LOCK_EVIDENCE = 4.5
+"""Decades, of the best frame: a dock in a pool has more from 8 m on; clutter, which is not quite
+what robust/acceptance.py supposes of it, seldom has (tests/host/track/test_detector.py prints
+what shaken views of real water come to).  The best, not the sum: frames of one scene are no
+independent evidence."""
 
 LOCK_SHARE = 0.5
 """Of the looks since the first that found it: clutter that looks like a dock does so in one frame
 and not in the next (the likest of the real photographs in a quarter of them), a dock in nearly all
 until it is about to be out of reach."""
 
-PATIENT_EVIDENCE = 1.9
+PATIENT_EVIDENCE = 2.5
 PATIENT_FRAMES = 10
-"""Less evidence of the best frame will do where so many frames agree: one picture in eighty of
-clutter has it, and few of those again and again where a moving vehicle must see it.  Three markers
-of four come no farther than 2.0 even in clear water."""
+PATIENT_SPAN_S = 2.0
+"""Less evidence of the best frame will do, or frames with a marker out, where so many agree over so
+long: one picture in two hundred of clutter has it, and few of those again and again where a moving
+vehicle must see it.  Over that time vehicle and dock sway, which tells which marker is out."""
 
 GIVEN_UP_S = 0.5
 """A candidate not seen for so long is dropped: a better one begins anew."""
@@ -35,20 +37,21 @@ GIVEN_UP_S = 0.5
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Candidate:
-    """``bank`` at ``time_s``, the last of ``frames`` that saw it, of so many ``looks`` since
-    ``since_s``; ``evidence`` of the best."""
+    """``bank`` at ``time_s``, the last of ``frames`` that saw it, ``whole`` in so many of them, of
+    so many ``looks`` since ``since_s``; ``evidence`` of the best."""
 
     bank: Bank
     since_s: float
     time_s: float
     frames: int
+    whole: int
     looks: int
     evidence: float
 
     @classmethod
     def of(cls, sight: Sight, evidence: float, time_s: float) -> Candidate:
         """From the first frame."""
-        return cls(Bank.of(sight), time_s, time_s, 1, 1, evidence)
+        return cls(Bank.of(sight), time_s, time_s, 1, int(sight.whole), 1, evidence)
 
     def seen(self, sight: Sight, evidence: float, time_s: float) -> Candidate | None:
         """After another frame with a dock; None where that is elsewhere."""
@@ -56,19 +59,26 @@ class Candidate:
         if bank is None:
             return None
         best = max(self.evidence, evidence)
-        return replace(self, bank=bank, time_s=time_s, frames=self.frames + 1, evidence=best)
+        return replace(
+            self,
+            bank=bank,
+            time_s=time_s,
+            frames=self.frames + 1,
+            whole=self.whole + sight.whole,
+            evidence=best,
+        )
 
     def looked_for(self) -> Candidate:
         """With one more look at a whole frame, whatever that found."""
         return replace(self, looks=self.looks + 1)
 
-    @property
-    def locked(self) -> bool:
-        """Whether it is to be trusted now."""
-        strong = self.evidence >= LOCK_EVIDENCE and self.frames >= LOCK_FRAMES
+    def locked(self, rival: bool) -> bool:
+        """Whether it is to be trusted now; a ``rival`` of a tracked dock must be patient."""
+        span_s = self.time_s - self.since_s
+        strong = not rival and self.evidence >= LOCK_EVIDENCE and self.whole >= LOCK_FRAMES
         patient = self.evidence >= PATIENT_EVIDENCE and self.frames >= PATIENT_FRAMES
-        steady = self.frames >= LOCK_SHARE * self.looks
-        return (strong or patient) and steady and self.time_s - self.since_s >= LOCK_SPAN_S
+        long = (strong and span_s >= LOCK_SPAN_S) or (patient and span_s >= PATIENT_SPAN_S)
+        return long and self.frames >= LOCK_SHARE * self.looks
 
     def given_up(self, time_s: float) -> bool:
         """Whether it was last seen too long ago."""

@@ -19,6 +19,8 @@ GYRO = 0.02
 _MAX_ROUNDS = 6
 # A step of less than a thirtieth of the error ends them.
 _CONVERGED = 1e-3
+# A pose that puts a marker so many standard deviations from where it was seen ran away.
+_RAN_AWAY = 1e5
 # Of true measurements one in a thousand is gated out: 3.09 of a normal distribution.
 _GATED = 3.09
 
@@ -52,7 +54,7 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
     measurement with a normal error: noise makes a plane that faces the camera look tilted, and
     the more it does the surer the tilt looks, so their mean is tilted too.
 
-    None where a marker would be behind the camera.
+    None where a marker would be behind the camera, or nowhere near.
     """
     P = state.covariance
     prior = np.linalg.inv(P[POSE, POSE])
@@ -109,6 +111,8 @@ class _Fit:
             return None
         pixels, derivatives = there
         error = (pixels - seen.pixels) / seen.sigma_px[:, None]
+        if not np.abs(error).max() < _RAN_AWAY:
+            return None
         return cls(error.ravel(), (derivatives / seen.sigma_px[:, None, None]).reshape(-1, 6))
 
 

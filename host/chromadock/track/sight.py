@@ -18,10 +18,14 @@ pixel, and a good calibration leaves 0.1 to 0.3 pixels."""
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sight:
-    """``markers`` with their errors, and the poses that they leave open, the best first."""
+    """``markers`` with their errors, and the poses that they leave open, the best first.
+
+    ``whole``: whether they are all of the dock's.
+    """
 
     markers: Sighting
     poses: tuple[Estimate, ...]
+    whole: bool
 
     @classmethod
     def of(
@@ -52,9 +56,11 @@ class Sight:
                 replace(p, chi_square=p.chi_square / widened, information=p.information / widened)
                 for p in poses
             ),
+            whole=len(points) == len(dock.points),
         )
 
     def worth(self, share: float) -> Sight:
         """The same with ``share`` 0..1 of its information."""
         seen = self.markers
-        return Sight(replace(seen, sigma_px=seen.sigma_px / np.sqrt(max(share, 1e-9))), self.poses)
+        sigma_px = seen.sigma_px / np.sqrt(max(share, 1e-9))
+        return replace(self, markers=replace(seen, sigma_px=sigma_px))

@@ -13,7 +13,7 @@ from chromadock.look import Found
 from chromadock.pose import Estimate
 from chromadock.track.attitude import R_BODY_CAMERA_FORWARD, Attitude, expected
 from chromadock.track.bank import Bank
-from chromadock.track.candidate import Candidate
+from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
 from chromadock.track.motion import POSE
 from chromadock.track.result import Track
 from chromadock.track.sight import Sight
@@ -24,16 +24,20 @@ KEEP_EVIDENCE = 2.5
 missed costs nothing."""
 
 FULL_SEARCH_S = 0.5
-"""While a dock is tracked the whole frame is searched this often: a wrong lock is left within two
+"""While a dock is tracked the whole frame is searched this often: a wrong lock is left within four
 seconds, and the search costs little on the average."""
 
 INCOMPLETE_SEARCH_S = 0.25
-"""Without a dock in sight one with a marker out is searched for this often: it costs as much as
-a whole dock's search for each marker."""
+"""Without a whole dock in sight one with a marker out is searched for this often: it costs as much
+as a whole dock's search for each marker."""
 
 CORRELATION_S = 0.2
 """Frames closer than this share their errors, by the same pixels under a marker and the same
 waves, and count together for one frame."""
+
+PARTIAL_CORRELATION_S = 1.0
+"""The same with a marker out: what is left of a systematic error of a tenth of a pixel, half a
+degree of a whole dock's attitude, is ten degrees then, and no number of frames makes it less."""
 
 FACING_CORRELATION_S = 7.0
 """The same of the dock's attitude as the vehicle expects it: mounting and course last, so the
@@ -66,11 +70,12 @@ class Plan:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Locked:
-    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen."""
+    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not."""
 
     bank: Bank
     time_s: float
     measured_s: float
+    whole: bool
 
 
 class Tracker:
@@ -119,7 +124,8 @@ class Tracker:
         """
         locked = self._kept(time_s)
         if locked is None or self._full_is_due(locked, time_s):
-            return Plan(incomplete=locked is None and self._incomplete_is_due(time_s))
+            partly = locked is None or not locked.whole
+            return Plan(incomplete=partly and self._incomplete_is_due(time_s))
         bank = locked.bank.after(max(time_s - locked.time_s, 0.0))
         likeliest = sorted(bank.hypotheses, key=lambda h: -h.weight)[:MAX_PRIORS]
         priors = tuple(
@@ -160,9 +166,10 @@ class Tracker:
         self._run_on(time_s, plan, attitude)
         sight = self._sight(plan, found, camera)
         if sight is not None:
-            followed = self._followed(sight, time_s, plan)
-            if not followed and plan.everywhere and found.evidence is not None:
-                self._propose(sight, found.evidence, time_s)
+            evidence = found.evidence or 0.0
+            followed = self._followed(sight, evidence, time_s, plan)
+            if not followed and plan.everywhere:
+                self._propose(sight, evidence, time_s)
         return self.at(time_s)
 
     def at(self, time_s: float) -> Track:
@@ -246,15 +253,22 @@ class Tracker:
         self._last_markers = found.markers
         return Sight.of(found.markers, found.estimates, self._dock, camera)
 
-    def _followed(self, sight: Sight, time_s: float, plan: Plan) -> bool:
-        """Whether the locked dock was measured."""
+    def _followed(self, sight: Sight, evidence: float, time_s: float, plan: Plan) -> bool:
+        """Whether the locked dock was measured.
+
+        One out of sight may be anywhere soon, and three markers of four leave open where the
+        fourth would be: what is found then must speak for itself.
+        """
         locked = self._locked
         if locked is None:
             return False
-        bank = locked.bank.seen(sight.worth(_share(time_s - locked.measured_s)))
+        unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
+        if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
+            return False
+        bank = locked.bank.seen(sight.worth(_share(sight, time_s - locked.measured_s)))
         if bank is None:
             return False
-        self._locked = _Locked(bank.doubting(sight), time_s, time_s)
+        self._locked = _Locked(bank.doubting(sight), time_s, time_s, sight.whole)
         self._last_seen_s = time_s
         if plan.everywhere:  # what stands out most is this dock: others are none
             self._candidates.clear()
@@ -263,7 +277,7 @@ class Tracker:
     def _propose(self, sight: Sight, evidence: float, time_s: float) -> None:
         """A dock where none is locked: a new candidate, or one more frame of one; or the lock."""
         for i, candidate in enumerate(self._candidates):
-            new = sight.worth(_share(time_s - candidate.time_s))
+            new = sight.worth(_share(sight, time_s - candidate.time_s))
             after = candidate.seen(new, evidence, time_s)
             if after is not None:
                 self._candidates[i] = after
@@ -272,13 +286,15 @@ class Tracker:
             after = Candidate.of(sight, evidence, time_s)
             self._candidates.append(after)
             self._candidates = self._candidates[-MAX_CANDIDATES:]
-        if after.locked:
-            self._locked = _Locked(after.bank, time_s, time_s)
+        locked = self._locked
+        rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
+        if after.locked(rival):
+            self._locked = _Locked(after.bank, time_s, time_s, sight.whole)
             self._last_seen_s = time_s
             self._faced_s = -np.inf
             self._candidates.clear()
 
 
-def _share(elapsed_s: float) -> float:
+def _share(sight: Sight, elapsed_s: float) -> float:
     """How much of a frame is new after the last."""
-    return min(1.0, elapsed_s / CORRELATION_S)
+    return min(1.0, elapsed_s / (CORRELATION_S if sight.whole else PARTIAL_CORRELATION_S))

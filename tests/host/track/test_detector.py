@@ -14,6 +14,7 @@ from robust_composites import CAMERA, DOCK, Water, add_lamp, photographed, read
 from track_truth import rotation
 
 from chromadock import Attitude, ChromadockError, Detection, Detector, Tracker
+from chromadock.track.candidate import PATIENT_SPAN_S
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"
 HZ = 10
@@ -80,7 +81,7 @@ def test_a_dock_with_a_marker_out_from_the_start_is_locked_in_clear_water(
     far = rotation(2, 10, 1), np.array([0.2, 0.1, 5.0])
     monkeypatch.setattr(sys.modules[__name__], "pose", lambda time_s: far)
     detector, alone = Detector(CAMERA, DOCK), Detector(CAMERA, DOCK, independent=True)
-    seen = run(detector, times(0.0, 1.5), out=(0,))
+    seen = run(detector, times(0.0, PATIENT_SPAN_S + 1), out=(0,))
     assert not any(d.found for d in seen)
     last = seen[-1].track
     assert last is not None and last.state == "tracking" and last.pose is not None

@@ -19,6 +19,7 @@ from chromadock.track.candidate import (
     LOCK_FRAMES,
     PATIENT_EVIDENCE,
     PATIENT_FRAMES,
+    PATIENT_SPAN_S,
 )
 from chromadock.track.states import KEPT_S, STATES, TRACKING_S, state_of
 from chromadock.track.tracker import FULL_SEARCH_S, KEEP_EVIDENCE, MAX_PRIORS, Plan
@@ -53,7 +54,7 @@ def nothing(time_s: float, plan: Plan) -> Found:
     return NOTHING
 
 
-def elsewhere(pose: Pose, evidence: float = 4.0) -> Seen:
+def elsewhere(pose: Pose, evidence: float = LOCK_EVIDENCE + 1) -> Seen:
     rng = np.random.default_rng(7)
     return lambda time_s, plan: found(pose, rng, evidence)
 
@@ -116,8 +117,10 @@ def test_evidence_of_like_frames_does_not_add_up(run: Run) -> None:
 def test_less_evidence_takes_more_frames(run: Run) -> None:
     rng = np.random.default_rng(1)
     fair: Seen = lambda time_s, plan: found(approach(time_s), rng, LOCK_EVIDENCE - 0.1)  # noqa: E731
-    states = [t.state for t in run.frames(2, fair)]
-    assert states == ["acquiring"] * (PATIENT_FRAMES - 1) + ["tracking"] * (21 - PATIENT_FRAMES)
+    states = [t.state for t in run.frames(PATIENT_SPAN_S + 1, fair)]
+    assert len(states) > PATIENT_FRAMES
+    first = round(PATIENT_SPAN_S * HZ)
+    assert states == ["acquiring"] * first + ["tracking"] * (len(states) - first)
 
 
 def test_what_is_a_dock_in_every_third_frame_only_is_none(run: Run) -> None:
@@ -220,7 +223,7 @@ def test_a_wrong_lock_is_left_for_a_dock_that_stands_out_more(run: Run) -> None:
     def both(time_s: float, plan: Plan) -> Found:
         return run.dock(time_s, plan) if plan.everywhere else ghost(time_s, plan)
 
-    tracks = run.frames(3.0, both)
+    tracks = run.frames(PATIENT_SPAN_S + 2, both)
     assert tracks[-1].pose is not None
     assert tracks[-1].pose.t == pytest.approx(approach(run.time_s - 1 / HZ)[1], abs=0.15)
     assert all(t.state == "tracking" for t in tracks)

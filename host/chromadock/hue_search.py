@@ -24,7 +24,8 @@ GUESS_DECADES = math.log10(1 + len(_OTHERS))
 has as many chances."""
 
 HOLD_LOOKS = 12
-"""Looks for which an offset that found something is kept: more than a lock takes."""
+"""Looks in a row that find nothing before an offset that found something is left: as long as a
+candidate of the track waits for its next frame, at 24 frames a second."""
 
 
 class HueSearch:

@@ -34,12 +34,17 @@ _SUPPOSED, _WIDE = 4.0, 0.7
 class Colours:
     """What the chroma of N peaks says of sets of them.
 
-    ``density`` (N, N): of one's chroma if its colour is the other's; ``near`` (N, N): who is in
-    whose neighbourhood; ``wide`` (N,): density of one's chroma if nothing is known of it.
+    ``density`` (N, N): of one's (column's) chroma if its colour is the other's; ``near`` (N, N):
+    who is in whose neighbourhood; ``everywhere`` and ``nearby`` (N,): sums of the densities over
+    all and over those near, ``count`` (N,) of these; ``wide`` (N,): density of one's chroma if
+    nothing is known of it.
     """
 
     density: Real
     near: NDArray[np.bool_]
+    everywhere: Real
+    nearby: Real
+    count: NDArray[np.intp]
     wide: Real
 
     @classmethod
@@ -49,31 +54,36 @@ class Colours:
         variance = SPREAD**2 + (NOISE / snr) ** 2
         square = (x[:, None] - x) ** 2 + (y[:, None] - y) ** 2
         density = _student(square, variance[:, None] + variance)
-        return cls(density, near, _student(x**2 + y**2, _WIDE**2 + variance))
+        return cls(
+            density,
+            near,
+            density.sum(axis=0),
+            (density * near).sum(axis=0),
+            near.sum(axis=0),
+            _student(x**2 + y**2, _WIDE**2 + variance),
+        )
 
     def most(self, aside: int) -> Real:
         """(N, N): log likelihood ratio that a peak (column) has another's (row) colour, at most:
         if ``aside`` others of its very colour are no clutter; of itself it says nothing.
         """
         members = (aside + 1) * np.diagonal(self.density)
-        everywhere = self.density.sum(axis=0) - members
-        nearby = (self.density * self.near).sum(axis=0) - members
-        count = self.near.sum(axis=0) - 1
-        clutter = self._clutter(everywhere, aside + 1, nearby, count, self.wide)
+        everywhere, nearby = self.everywhere - members, self.nearby - members
+        clutter = self._clutter(everywhere, aside + 1, nearby, self.count - 1, self.wide)
         ratio = np.log((1 - DISTURBED) * self.density / clutter + DISTURBED)
         np.fill_diagonal(ratio, 0)
         return np.asarray(ratio)
 
     def log_common(self, members: NDArray[np.intp]) -> Real:
-        """(M,) log likelihood ratio that sets (M, n) of peaks have one colour each, and not any.
+        """(M,) log likelihood ratio that sets (M, n) of peaks have one colour in common.
 
         The mean of the ratios with each member for the one that has the dock's.
         """
         rows, columns = members[:, :, None], members[:, None, :]
         pairs, beside = self.density[rows, columns], self.near[rows, columns]
-        everywhere = self.density.sum(axis=0)[members] - pairs.sum(axis=1)
-        nearby = (self.density * self.near).sum(axis=0)[members] - (pairs * beside).sum(axis=1)
-        count = self.near.sum(axis=0)[members] - beside.sum(axis=1)
+        everywhere = self.everywhere[members] - pairs.sum(axis=1)
+        nearby = self.nearby[members] - (pairs * beside).sum(axis=1)
+        count = self.count[members] - beside.sum(axis=1)
         clutter = self._clutter(everywhere, members.shape[1], nearby, count, self.wide[members])
         ratio = np.log((1 - DISTURBED) * pairs / clutter[:, None] + DISTURBED)
         own = np.arange(members.shape[1])

@@ -67,7 +67,6 @@ def guided(
     covariance = jacobian @ prior.covariance @ jacobian.T + sigma_px**2 * np.eye(2 * count)
     distances = np.linalg.norm(peaks.xy[:, None] - peaks.xy[None], axis=2)
     clutter = Clutter.of(distances, peaks.snr, float(camera.width * camera.height))
-
     colours = Colours.of(peaks.chroma, peaks.snr, clutter.near)
 
     most = max(1, int(_MAX_CHOICES ** (1 / count)))
@@ -88,15 +87,15 @@ def guided(
         part = covariance[np.ix_(rows, rows)]
         inverse, log_norm = np.linalg.inv(part), -0.5 * np.linalg.slogdet(2 * np.pi * part)[1]
         chance = np.log(1 - HIDDEN if left_out is None else HIDDEN)
-        for choice in product(*(options[m] for m in markers)):
-            members = np.array(choice)
-            if len(set(choice)) < len(choice):
-                continue
-            off = (peaks.xy[members] - expected[markers]).ravel()
-            evidence = chance + log_norm - 0.5 * off @ inverse @ off
-            evidence += log_alike(peaks.snr[members][None], along[markers])[0]
-            evidence += clutter.rarity_of(members[None])[0]
-            evidence += colours.log_common(members[None])[0]
-            if best is None or evidence > best.evidence:
-                best = Guess(markers, members, float(evidence), expected[markers])
+        choices = [c for c in product(*(options[m] for m in markers)) if len(set(c)) == len(c)]
+        if not choices:
+            continue
+        members = np.array(choices)
+        off = (peaks.xy[members] - expected[markers]).reshape(len(members), -1)
+        evidence = chance + log_norm - 0.5 * (off @ inverse * off).sum(axis=1)
+        evidence += log_alike(peaks.snr[members], along[markers])
+        evidence += clutter.rarity_of(members) + colours.log_common(members)
+        k = int(evidence.argmax())
+        if best is None or evidence[k] > best.evidence:
+            best = Guess(markers, members[k], float(evidence[k]), expected[markers])
     return best

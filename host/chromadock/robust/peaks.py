@@ -15,8 +15,8 @@ MIN_SNR = 3.0
 stand out.  As much more at a coarser scale as its cells are wider: what fills them is near."""
 
 MAX_PEAKS = 56
-"""The strongest are kept, so that any frame takes bounded time.  Of docks whose markers are
-all among a hundred, one in a hundred is lost."""
+"""The strongest are kept, so that any frame takes bounded time.  Where glitter has more, a dock
+is seldom told from it: a third more peaks would find one dock in 400 more at 4 m."""
 
 # A lamp between four cells has half its signal to noise in each; noise would seldom add more.
 _CELL_SHARE = 0.7

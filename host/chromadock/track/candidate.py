@@ -27,9 +27,9 @@ until it is about to be out of reach."""
 PATIENT_EVIDENCE = 2.5
 PATIENT_FRAMES = 10
 PATIENT_SPAN_S = 2.0
-"""Less evidence of the best frame will do, or frames with a marker out, where so many agree over so
-long: one picture in two hundred of clutter has it, and few of those again and again where a moving
-vehicle must see it.  Over that time vehicle and dock sway, which tells which marker is out."""
+"""Less evidence of the best frame will do, or frames with a marker out, where so many agree over
+so long: three pictures in a thousand of clutter have it, and few of those again and again where a
+moving vehicle must see it.  Over that time vehicle and dock sway: it shows which marker is out."""
 
 GIVEN_UP_S = 0.5
 """A candidate not seen for so long is dropped: a better one begins anew."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -182,8 +183,8 @@ class Detector:
 
     @staticmethod
     def _background(frame_bgr: NDArray[np.uint8]) -> BackgroundColour:
-        working_bgr = working_image(frame_bgr)
-        return background_colour(smooth(np.ascontiguousarray(working_bgr[..., ::-1])))
+        working_rgb = cv2.cvtColor(working_image(frame_bgr), cv2.COLOR_BGR2RGB)
+        return background_colour(smooth(np.asarray(working_rgb, np.uint8)))
 
 
 # One for all frames of a size: what a method prepares for a camera, it need not prepare again.

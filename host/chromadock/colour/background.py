@@ -61,7 +61,7 @@ def background_colour(image: NDArray[np.uint8]) -> BackgroundColour:
     counts = np.bincount(bins.ravel(), minlength=method.GREY_BINS)
     fullest = int(np.argmax(counts))  # the first of equals: ties go to the darker
     hue, saturation, value, chroma = hsv_from_rgb(
-        image.reshape(-1, 3)[np.flatnonzero(bins == fullest)]
+        image.reshape(-1, 3).take(np.flatnonzero(bins == fullest), axis=0)
     )
     x = int((chroma * hue_cos(hue)).sum(dtype=np.int64))
     y = int((chroma * hue_sin(hue)).sum(dtype=np.int64))

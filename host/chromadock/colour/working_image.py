@@ -52,7 +52,7 @@ def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Sums (60, 80, 3) and counts of a frame whose cells all have the same whole size.
+    """Sums (60, 80, 3) and counts (1, 80, 1) of a frame whose cells have all the same whole size.
 
     Exact, and four times as fast as the other: the 64 rows at most of a cell of the largest
     frame add up in 16 bits, its 64 x 64 pixels in float32, which holds integers up to 2^24.
@@ -61,11 +61,12 @@ def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArra
     columns = pixels.shape[1] // method.WORKING_WIDTH
     stacked = pixels.reshape(method.WORKING_HEIGHT, rows, -1)
     upright = np.add.reduce(stacked, axis=1, dtype=np.uint16)
-    # One product a row of cells: a single large one would start the library's threads.
-    cells = upright.reshape(method.WORKING_HEIGHT, -1, 3 * columns).astype(np.float32)
-    sums = cells @ _by_channel(columns)
-    shape = (method.WORKING_HEIGHT, method.WORKING_WIDTH, 3)
-    return sums.reshape(shape).astype(np.float64), np.array(rows * columns)
+    # OpenCV's product keeps to the threads that OpenCV is allowed; numpy's starts its own.
+    sums = cv2.gemm(
+        upright.reshape(-1, 3 * columns).astype(np.float32), _by_channel(columns), 1, None, 0
+    ).reshape(method.WORKING_HEIGHT, method.WORKING_WIDTH, 3)
+    # A count for each column: numpy is slow to repeat a single one for three channels.
+    return sums.astype(np.float64), np.full((1, method.WORKING_WIDTH, 1), rows * columns)
 
 
 @cache

@@ -32,14 +32,13 @@ _MAX_RIDGE = 0.7
 # the second darkest of eight places about: a buoy beside it may be brighter, and one place may
 # be a dark edge.  A lamp's dark holder takes some; but painted parts of a dock, which form
 # constellations of their own where this is let pass, take more.  Standard deviations of noise.
-_BEHIND = 1
 _MOST_MISSING = 3.0
 
 # Rings that tell ridges, in cells; eight directions, those opposite four apart.
-_DOWN = np.array([0, 1, 1, 1, 0, -1, -1, -1])
-_ACROSS = np.array([1, 1, 0, -1, -1, -1, 0, 1])
-_RADII = (2, 3)
-_BORDER = max(_RADII)
+_DOWN = np.array([0, 1, 1, 1, 0, -1, -1, -1])[:, None]
+_ACROSS = np.array([1, 1, 0, -1, -1, -1, 0, 1])[:, None]
+_RADII = np.array([2, 3])[:, None, None]
+_BORDER = 3
 _SQUARE = np.ones((3, 3), np.uint8)
 
 
@@ -73,17 +72,17 @@ def find_peaks(response: Response, scale: Scale) -> Peaks:
     padded = cv2.copyMakeBorder(scale.snr, *(_BORDER,) * 4, cv2.BORDER_REPLICATE)
     values, stride = padded.ravel(), padded.shape[1]
     at = (rows + _BORDER) * stride + columns + _BORDER
-    near, centre = values[at[:, None] + _ring(stride, 1)], values[at]
+    near, centre = values[at + _ring(stride, 1)], values[at]
     snr = _brightest(centre, near)
-    order = np.argsort(-snr, kind="stable")[:_MAX_SUMMITS]
-    order = order[snr[order] >= least]
-    if not len(order):
+    bright = np.flatnonzero(snr >= least)
+    if not len(bright):
         return _NONE
-    at, near, centre = at[order], near[order], centre[order]
+    order = bright[np.argsort(-snr[bright], kind="stable")[:_MAX_SUMMITS]]
+    at, near, centre = at[order], near[:, order], centre[order]
 
     shift, roundness = _paraboloid(centre, near)
-    sides = values[at[:, None, None] + np.stack([_ring(stride, r) for r in _RADII])]
-    ridge = np.minimum(sides[..., :4], sides[..., 4:]).max(axis=(1, 2)) / centre
+    sides = values[at + _ring(stride, _RADII)]
+    ridge = np.minimum(sides[:, :4], sides[:, 4:]).max(axis=(0, 1)) / centre
     kept = np.flatnonzero((roundness > _MIN_ROUNDNESS) & (ridge < _MAX_RIDGE))
     row, column = rows[order[kept]], columns[order[kept]]
     added = gained(scale.light, row, column)
@@ -93,7 +92,7 @@ def find_peaks(response: Response, scale: Scale) -> Peaks:
     if not len(true):
         return _NONE
     kept, row, column = kept[true], row[true], column[true]
-    cells = np.column_stack([column, row]) + shift[kept]
+    cells = np.column_stack([column, row]) + shift[:, kept].T
     noise = np.asarray(scale.excess[row, column] / centre[kept], np.float64)
     xy = (cells + 0.5) * scale.cell - 0.5
     strength = snr[order[kept]].astype(np.float64)
@@ -106,34 +105,42 @@ def gained(
 ) -> NDArray[np.float32]:
     """Light (N, 3) of cells beyond what is taken to be behind them, of (h, w, 3) light."""
     height, width = light.shape[:2]
-    y = np.clip(row + _BORDER * _DOWN[:, None], 0, height - 1)
-    x = np.clip(column + _BORDER * _ACROSS[:, None], 0, width - 1)
+    y = np.clip(row + _BORDER * _DOWN, 0, height - 1)
+    x = np.clip(column + _BORDER * _ACROSS, 0, width - 1)
     around = light.reshape(-1, 3).take(y * width + x, axis=0)
-    around.sort(axis=0)
-    return np.asarray(light[row, column] - around[_BEHIND], np.float32)
+    return np.asarray(light[row, column] - _second(around), np.float32)
 
 
-def _ring(stride: int, radius: int) -> NDArray[np.intp]:
-    """Flat offsets of the eight directions."""
+def _second(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The second least of eight along the first axis: of pairs, of fours, of all."""
+    least, second = np.minimum(values[:4], values[4:]), np.maximum(values[:4], values[4:])
+    for half in (2, 1):
+        greater = np.maximum(least[:half], least[half:])
+        second = np.minimum(np.minimum(second[:half], second[half:]), greater)
+        least = np.minimum(least[:half], least[half:])
+    return np.asarray(second[0], np.float32)
+
+
+def _ring(stride: int, radius: int | NDArray[np.intp]) -> NDArray[np.intp]:
+    """Flat offsets (8, 1) of the eight directions, for each radius."""
     return np.asarray(radius * (_DOWN * stride + _ACROSS))
 
 
 def _brightest(centre: NDArray[np.float32], near: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Signal to noise of the brightest 2 x 2 values of 3 x 3; ``near`` (N, 8) are the ring."""
-    quadrants = near[:, ::2] + near[:, 1::2] + near[:, [2, 4, 6, 0]]
-    return np.asarray((centre + np.maximum(quadrants.max(axis=1), 0)) / 2, np.float32)
+    """Signal to noise of the brightest 2 x 2 values of 3 x 3; ``near`` (8, N) are the ring."""
+    quadrants = near[::2] + near[1::2] + near[[2, 4, 6, 0]]
+    return np.asarray((centre + np.maximum(quadrants.max(axis=0), 0)) / 2, np.float32)
 
 
 def _paraboloid(
     centre: NDArray[np.float32], near: NDArray[np.float32]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Of the top through 3 x 3 values: x, y (N, 2) within half a cell, and roundness (N,).
+    """Of the top through 3 x 3 values: x, y (2, N) within half a cell, and roundness (N,).
 
-    ``near`` (N, 8) are the ring of radius 1.
+    ``near`` (8, N) are the ring of radius 1.
     """
-    right, down, left, up = near[:, 0], near[:, 2], near[:, 4], near[:, 6]
-    xx, yy = 2 * centre - left - right, 2 * centre - up - down
-    xy = (near[:, 3] + near[:, 7] - near[:, 1] - near[:, 5]) / 4
+    ahead, behind = near[:4:2], near[4::2]  # right and down, left and up
+    xx, yy = bend = 2 * centre - ahead - behind
+    xy = (near[3] + near[7] - near[1] - near[5]) / 4
     roundness = 4 * (xx * yy - xy * xy) / np.maximum((xx + yy) ** 2, 1e-12)
-    slope, bend = np.stack([right - left, down - up], 1), np.stack([xx, yy], 1)
-    return np.clip(slope / np.maximum(2 * bend, 1e-6), -0.5, 0.5), roundness
+    return np.clip((ahead - behind) / np.maximum(2 * bend, 1e-6), -0.5, 0.5), roundness

@@ -129,7 +129,7 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
         Scale(cell, light, *_against(centre, behind))
         for cell, light, centre in zip(cells, lights, centres, strict=True)
     )
-    return Response(weights, _across(covariance, weights), covariance, surround, scales)
+    return Response(weights, _across(covariance, signature), covariance, surround, scales)
 
 
 def _halved(image: NDArray[_Number]) -> NDArray[_Number]:
@@ -165,11 +165,20 @@ def _matched_filter(
     return (whitened / np.sqrt(signature @ whitened)).astype(np.float32)[None]
 
 
-def _across(covariance: NDArray[np.float64], weights: NDArray[np.float32]) -> NDArray[np.float64]:
-    """(2, 3) filters whose noise is 1 and independent of each other's and of the weights'."""
-    root = np.linalg.cholesky(covariance)  # a filter f has noise |f root|
-    perpendicular = np.linalg.svd(weights @ root)[2][1:]
-    return np.asarray(np.linalg.solve(root.T, perpendicular.T).T)
+def _across(
+    covariance: NDArray[np.float64], signature: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(2, 3) filters blind to colour s, whose noise is 1 and independent of each other's.
+
+    Two vector products with s; the noise of both, and of the matched filter, is independent
+    since f S f' = 0 for any two of them.
+    """
+    b, g, r = signature
+    product = np.array([[0, -r, g], [r, 0, -b], [-g, b, 0]])
+    first = product[signature.argmin()]
+    both = np.stack([first, product @ covariance @ first])
+    variances = (both @ covariance * both).sum(axis=1)
+    return np.asarray(both / np.sqrt(variances)[:, None])
 
 
 def _against(

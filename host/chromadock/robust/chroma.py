@@ -107,4 +107,4 @@ class Colours:
 def _student(square: Real, variance: Real) -> Real:
     """Density of Student's distribution in the plane, with two degrees of freedom: noise's middle
     and glints' tails."""
-    return np.asarray(1 / (2 * np.pi * variance * (1 + square / (2 * variance)) ** 2))
+    return np.asarray(variance / (2 * np.pi * (variance + 0.5 * square) ** 2))

@@ -40,13 +40,26 @@ def log_alike(snr: NDArray[np.float64], along: NDArray[np.float64]) -> NDArray[n
     """
     value, weight = np.log(snr), 1 / variance(snr)
     # Normal equations of value = common + slope along, the slope's prior included.
-    a, b = weight.sum(axis=1), (weight * along).sum(axis=1)
-    c = (weight * along**2).sum(axis=1) + 1 / SLOPE**2
-    x, y = (weight * value).sum(axis=1), (weight * value * along).sum(axis=1)
+    powers = along[:, None] ** np.arange(3)
+    a, b, c = (weight @ powers).T
+    c = c + 1 / SLOPE**2
+    x, y = (weight * value @ powers[:, :2]).T
     determinant = a * c - b * b
     off = (weight * value**2).sum(axis=1) - (c * x * x - 2 * b * x * y + a * y * y) / determinant
-    norm = np.log(weight / (2 * np.pi)).sum(axis=1) - np.log(determinant / (2 * np.pi))
+    norm = np.log((weight / (2 * np.pi)).prod(axis=1) / (determinant / (2 * np.pi)))
     return np.asarray(0.5 * (norm - off) - np.log(SLOPE) - np.log(_LOG_RANGE))
+
+
+def log_unlike(
+    snr: NDArray[np.float64], other: NDArray[np.float64], apart: float
+) -> NDArray[np.float64]:
+    """(N,) the least that ``log_alike`` of any set with both of (N,) markers falls below its most.
+
+    Their difference alone: density of all = density of it, times that of the others given it.
+    ``apart``: the markers' distance along the dock.
+    """
+    spread = variance(snr) + variance(other) + (SLOPE * apart) ** 2
+    return np.asarray(-0.5 * np.log(snr / other) ** 2 / spread)
 
 
 def placed_along(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -154,7 +154,9 @@ class _View:
         if len(peaks.snr) < len(self.model.order):
             return []
         if cell not in self._searches:
-            self._searches[cell] = Search(self.model, _PEAK_ERROR * cell, self.area)
+            # Cells of markers that touch tell them apart no more.
+            apart_px = 2.0 * cell
+            self._searches[cell] = Search(self.model, _PEAK_ERROR * cell, self.area, apart_px)
         found = self._searches[cell].find(
             ideal(peaks.xy, self.camera), peaks.snr, peaks.chroma, HOPEFUL
         )
@@ -279,9 +281,8 @@ class _Measured:
 
 def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """All ways to choose a place for each marker: (N, n, 2) places and their (N, n) errors."""
-    chosen = np.array(list(product(*(range(len(top.sigma)) for top in tops))))
-    xy = np.stack([top.xy[chosen[:, k]] for k, top in enumerate(tops)], 1)
-    return xy, np.stack([top.sigma[chosen[:, k]] for k, top in enumerate(tops)], 1)
+    xy, sigma = product(*(top.xy for top in tops)), product(*(top.sigma for top in tops))
+    return np.array(list(xy)), np.array(list(sigma))
 
 
 def _poses(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimate, ...]:

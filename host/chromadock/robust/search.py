@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from chromadock.robust.chroma import Colours
 from chromadock.robust.clutter import Clutter
-from chromadock.robust.evidence import STRONGEST, log_alike
+from chromadock.robust.evidence import STRONGEST, log_alike, log_unlike
 from chromadock.robust.shape import Complex, Real, ShapeModel, stacked
 
 MAX_SETS = 128
@@ -39,10 +39,15 @@ class Candidates:
 
 
 class Search:
-    """Finds one dock in peaks located to ``sigma_px``, in a frame of so many square pixels."""
+    """Finds one dock in peaks located to ``sigma_px``, in a frame of so many square pixels,
+    whose closest markers are ``apart_px`` or more from each other.
+    """
 
-    def __init__(self, model: ShapeModel, sigma_px: float, frame_area: float) -> None:
+    def __init__(
+        self, model: ShapeModel, sigma_px: float, frame_area: float, apart_px: float = 0.0
+    ) -> None:
         self._model = model
+        self._side = model.side.beyond(apart_px)
         self._slack = 2 * sigma_px
         self._area = frame_area
         bounds = np.concatenate([[model.base.shortest], model.edges, [model.base.longest]])
@@ -50,7 +55,9 @@ class Search:
         # The errors of the base's ends add half of the marker's own.
         noise = 1.5 * (sigma_px / middles) ** 2
         self._steps = [_Step.of(model, k, noise) for k in range(len(model.order) - 2)]
-        self._gain = self._best_gain()
+        # The most that strengths, and places given the base, may add: by the base's span.
+        self._alike = float(log_alike(np.full((1, len(model.order)), STRONGEST), model.along)[0])
+        self._most = self._alike - np.log(frame_area) + sum(s.log_peak for s in self._steps)
 
     def find(self, z: Complex, snr: Real, chroma: Real, least: float) -> Candidates:
         """Sets of peaks with an evidence of ``least`` or more.
@@ -65,8 +72,12 @@ class Search:
         apart = z - z[:, None]
         distances = np.abs(apart)
         none = Candidates(np.empty((0, count), np.intp), np.empty(0), np.empty(0))
+        first, second = np.nonzero(model.base.holds(apart, distances, self._slack))
+        has_base = np.zeros(len(z), np.bool_)
+        has_base[first] = True
         # The side is short, so few pairs of peaks can be one.
-        p, third = np.nonzero(model.side.holds(apart, distances, self._slack))
+        sides = self._side.holds(apart, distances, self._slack) & has_base[:, None]
+        p, third = np.nonzero(sides)
         if not len(p):
             return none
 
@@ -77,44 +88,59 @@ class Search:
         colours = Colours.of(chroma, snr, clutter.near)
         same = colours.most(aside=count - 1)
         rarity = clutter.rarity(aside=count - 1)
-        rarest = np.maximum(np.maximum(rarity[p], rarity[third])[:, None], rarity)
-        lengths = distances[p]
-        hope = self._gain[np.minimum(lengths, len(self._gain) - 1).astype(np.intp)]
-        hope += (rarity[p] + rarity[third])[:, None] + rarity + (count - 3) * rarest
+        size = distances[first, second]
+        span = np.searchsorted(model.edges, size)
+        place = model.log_base(apart[first, second])
+        base = np.full(apart.shape, -np.inf)
+        base[first, second] = place + self._most[span] - 2 * (count - 2) * np.log(size)
+        base += rarity + same
         nearest = same.max(axis=1, initial=0.0)
-        hope += same[p] + (same[p, third] + (count - 3) * nearest[p])[:, None]
-        held = (hope >= least) & model.base.holds(apart[p], lengths, self._slack)
-        pair, q = np.nonzero(held)
+        side = rarity[p] + rarity[third] + same[p, third] + (count - 3) * nearest[p]
+        side += self._unlike(snr, p, third)
+        rarest = np.maximum(np.maximum(rarity[p], rarity[third])[:, None], rarity)
+        hope = side[:, None] + base[p] + (count - 3) * rarest
+        pair, q = np.nonzero(hope >= least)
         if not len(pair):
             return none
-        sets = _Sets.of(np.column_stack([p[pair], q]), apart, model, hope[pair, q])
-        sets = sets.extended(self._steps[0], apart, np.arange(len(pair)), third[pair], least)
+
+        of_pair = np.zeros(apart.shape, np.intp)
+        of_pair[first, second] = np.arange(len(first))
+        at = of_pair[p[pair], q]
+        sets = _Sets(
+            members=np.column_stack([p[pair], q]),
+            ends=apart[p[pair], q],
+            span=span[at],
+            shape=np.empty((len(at), 0), complex),
+            place=place[at],
+            hope=hope[pair, q],
+            supposed=nearest[p[pair]] + rarest[pair, q],
+        ).extended(self._steps[0], apart, np.arange(len(pair)), third[pair], 0.0, least)
         for step in self._steps[1:]:
             if not len(sets.members):
-                break
+                return none
             expected = sets.ends * step.expected(sets.shape, sets.span)
             reach = np.abs(sets.ends) * step.reach[sets.span]
             off = apart[sets.members[:, 0]] - expected[:, None]
             parent, peak = np.nonzero(np.abs(off) < reach[:, None])
-            sets = sets.extended(step, apart, parent, peak, least)
-        if not len(sets.members):
-            return none
+            known = rarity[peak] + same[sets.members[parent, 0], peak] - sets.supposed[parent]
+            sets = sets.extended(step, apart, parent, peak, known, least)
 
-        looks = log_alike(snr[sets.members], model.along) + clutter.rarity_of(sets.members)
-        looks += colours.log_common(sets.members)
-        evidence = sets.place - np.log(self._area) + looks
+        alike = log_alike(snr[sets.members], model.along)
+        more = alike - self._alike - self._unlike(snr, sets.members[:, 0], sets.members[:, 2])
+        kept = np.flatnonzero(sets.hope + more >= least)
+        if not len(kept):
+            return none
+        members = sets.members[kept]
+        looks = alike[kept] + clutter.rarity_of(members) + colours.log_common(members)
+        evidence = sets.place[kept] - np.log(self._area) + looks
         best = _best(evidence, int((evidence >= least).sum()))
         by_marker = np.argsort(model.order)
-        return Candidates(sets.members[best][:, by_marker], evidence[best], looks[best])
+        return Candidates(members[best][:, by_marker], evidence[best], looks[best])
 
-    def _best_gain(self) -> Real:
-        """The most that evidence can exceed rarity, by the base's length in whole pixels."""
-        lengths = np.arange(1, np.ceil(self._model.base.longest + self._slack) + 2)
-        span = np.searchsorted(self._model.edges, lengths)
-        straight = self._model.log_base(lengths * self._model.base.direction)
-        shape = sum(step.log_peak[span] - 2 * np.log(lengths) for step in self._steps)
-        equal = log_alike(np.full((1, len(self._model.order)), STRONGEST), self._model.along)
-        return np.asarray(straight + shape + equal - np.log(self._area))
+    def _unlike(self, snr: Real, p: NDArray[np.intp], third: NDArray[np.intp]) -> Real:
+        """What the strengths of (M,) sides take off at least of the most that is hoped for."""
+        along = self._model.along
+        return log_unlike(snr[p], snr[third], float(along[2] - along[0]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +149,8 @@ class _Sets:
 
     ``members`` (M, k); ``ends`` (M,) and ``span`` (M,): the base and its span of sizes;
     ``shape`` (M, k - 2); ``place`` (M,): log density of the places, the first's left out;
-    ``hope`` (M,): the most that the evidence may become.
+    ``hope`` (M,): the most that the evidence may become; ``supposed`` (M,): what of it each of
+    the markers to come is supposed to add by its strength and colour.
     """
 
     members: NDArray[np.intp]
@@ -132,16 +159,7 @@ class _Sets:
     shape: Complex
     place: Real
     hope: Real
-
-    @classmethod
-    def of(cls, bases: NDArray[np.intp], apart: Complex, model: ShapeModel, hope: Real) -> _Sets:
-        """Bases (M, 2), and what may be hoped for if they pointed where they mostly do."""
-        ends = apart[bases[:, 0], bases[:, 1]]
-        size = np.abs(ends)
-        place = model.log_base(ends)
-        hope = hope + place - model.log_base(size * model.base.direction)
-        none = np.empty((len(bases), 0), complex)
-        return cls(bases, ends, np.searchsorted(model.edges, size), none, place, hope)
+    supposed: Real
 
     def extended(
         self,
@@ -149,14 +167,15 @@ class _Sets:
         apart: Complex,
         parent: NDArray[np.intp],
         peak: NDArray[np.intp],
+        known: Real | float,
         least: float,
     ) -> _Sets:
         """Sets ``parent`` (L,) with one more ``peak`` (L,) each, where that may still come to
-        ``least``; MAX_SETS."""
+        ``least``; MAX_SETS.  ``known`` (L,): how much more than supposed each peak adds."""
         b = apart[self.members[parent, 0], peak] / self.ends[parent]
         span = self.span[parent]
         density, near = step.judge(b, self.shape[parent], span)
-        hope = self.hope[parent] + density - step.log_peak[span]
+        hope = self.hope[parent] + density - step.log_peak[span] + known
         near &= (self.members[parent] != peak[:, None]).all(axis=1) & (hope >= least)
         kept = np.flatnonzero(near)
         if len(kept) > MAX_SETS:
@@ -170,6 +189,7 @@ class _Sets:
             np.column_stack([self.shape[parent], b[kept]]),
             self.place[parent] + density[kept] - 2 * np.log(np.abs(ends)),
             hope[kept],
+            self.supposed[parent],
         )
 
 

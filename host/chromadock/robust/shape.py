@@ -11,7 +11,7 @@ Places are complex numbers x + iy in ideal pixels: focal length times tangent, n
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,10 @@ class Window:
         shortest, longest = np.quantile(np.abs(displacements), [_TAIL, 1 - _TAIL])
         half_angle = min(float(np.quantile(turned, 1 - _TAIL)), 1.4)
         return cls(float(shortest), float(longest), direction, half_angle)
+
+    def beyond(self, length: float) -> Window:
+        """Without what is shorter."""
+        return replace(self, shortest=max(self.shortest, length))
 
     def holds(self, displacements: Complex, distances: Real, slack: float) -> NDArray[np.bool_]:
         """Which displacements, known to ``slack``, lie inside."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from chromadock.robust.chroma import Colours
 from chromadock.robust.clutter import Clutter
 from chromadock.robust.evidence import STRONGEST, log_alike, log_unlike
-from chromadock.robust.shape import Complex, Real, ShapeModel, stacked
+from chromadock.robust.shape import Complex, Real, ShapeModel
 
 MAX_SETS = 128
 """Sets that are followed at once: bounds the time; few frames have as many."""
@@ -55,8 +55,10 @@ class Search:
         # The errors of the base's ends add half of the marker's own.
         noise = 1.5 * (sigma_px / middles) ** 2
         self._steps = [_Step.of(model, k, noise) for k in range(len(model.order) - 2)]
+        count = len(model.order)
+        self._none = Candidates(np.empty((0, count), np.intp), np.empty(0), np.empty(0))
         # The most that strengths, and places given the base, may add: by the base's span.
-        self._alike = float(log_alike(np.full((1, len(model.order)), STRONGEST), model.along)[0])
+        self._alike = float(log_alike(np.full((1, count), STRONGEST), model.along)[0])
         self._most = self._alike - np.log(frame_area) + sum(s.log_peak for s in self._steps)
 
     def find(self, z: Complex, snr: Real, chroma: Real, least: float) -> Candidates:
@@ -68,87 +70,133 @@ class Search:
         snr : (N,) signal to noise.
         chroma : (N, 2) radians, see ``Response.chroma``.
         """
-        model, count = self._model, len(self._model.order)
         apart = z - z[:, None]
         distances = np.abs(apart)
-        none = Candidates(np.empty((0, count), np.intp), np.empty(0), np.empty(0))
-        first, second = np.nonzero(model.base.holds(apart, distances, self._slack))
-        has_base = np.zeros(len(z), np.bool_)
-        has_base[first] = True
+        bases = self._model.base.holds(apart, distances, self._slack)
         # The side is short, so few pairs of peaks can be one.
-        sides = self._side.holds(apart, distances, self._slack) & has_base[:, None]
-        p, third = np.nonzero(sides)
-        if not len(p):
-            return none
-
-        # A base with it is worth following if it passes with the best of places, and with others
-        # as rare as the rarest of these three (rarer ones would be too unlike) and of the colour
-        # nearest to the first's.
-        clutter = Clutter.of(distances, snr, self._area)
-        colours = Colours.of(chroma, snr, clutter.near)
-        same = colours.most(aside=count - 1)
-        rarity = clutter.rarity(aside=count - 1)
-        size = distances[first, second]
-        span = np.searchsorted(model.edges, size)
-        place = model.log_base(apart[first, second])
-        base = np.full(apart.shape, -np.inf)
-        base[first, second] = place + self._most[span] - 2 * (count - 2) * np.log(size)
-        base += rarity + same
-        nearest = same.max(axis=1, initial=0.0)
-        side = rarity[p] + rarity[third] + same[p, third] + (count - 3) * nearest[p]
-        side += self._unlike(snr, p, third)
-        rarest = np.maximum(np.maximum(rarity[p], rarity[third])[:, None], rarity)
-        hope = side[:, None] + base[p] + (count - 3) * rarest
-        pair, q = np.nonzero(hope >= least)
-        if not len(pair):
-            return none
-
-        of_pair = np.zeros(apart.shape, np.intp)
-        of_pair[first, second] = np.arange(len(first))
-        at = of_pair[p[pair], q]
-        sets = _Sets(
-            members=np.column_stack([p[pair], q]),
-            ends=apart[p[pair], q],
-            span=span[at],
-            shape=np.empty((len(at), 0), complex),
-            place=place[at],
-            hope=hope[pair, q],
-            supposed=nearest[p[pair]] + rarest[pair, q],
-        ).extended(self._steps[0], apart, np.arange(len(pair)), third[pair], 0.0, least)
+        sides = self._side.holds(apart, distances, self._slack) & bases.any(axis=1)[:, None]
+        if not sides.any():
+            return self._none
+        looks = _Looks.of(self._model, snr, chroma, Clutter.of(distances, snr, self._area))
+        pairs, third = self._begun(apart, distances, bases, np.nonzero(sides), looks, least)
+        if not len(third):
+            return self._none
+        b, each = self._steps[0].mean[pairs.span], np.arange(len(third))
+        sets = pairs.extended(self._steps[0], b, apart, each, third, np.zeros(len(third)), least)
         for step in self._steps[1:]:
-            if not len(sets.members):
-                return none
-            expected = sets.ends * step.expected(sets.shape, sets.span)
+            if not len(sets.ends):
+                return self._none
+            b = step.expected(sets.shape, sets.span)
             reach = np.abs(sets.ends) * step.reach[sets.span]
-            off = apart[sets.members[:, 0]] - expected[:, None]
+            off = apart[sets.members[0]] - (sets.ends * b)[:, None]
             parent, peak = np.nonzero(np.abs(off) < reach[:, None])
-            known = rarity[peak] + same[sets.members[parent, 0], peak] - sets.supposed[parent]
-            sets = sets.extended(step, apart, parent, peak, known, least)
+            more = looks.most(sets.members[0, parent], peak) - sets.supposed[parent]
+            sets = sets.extended(step, b, apart, parent, peak, more, least)
+        return self._weighed(sets, looks, least)
 
-        alike = log_alike(snr[sets.members], model.along)
-        more = alike - self._alike - self._unlike(snr, sets.members[:, 0], sets.members[:, 2])
-        kept = np.flatnonzero(sets.hope + more >= least)
+    def _begun(
+        self,
+        apart: Complex,
+        distances: Real,
+        bases: NDArray[np.bool_],
+        sides: tuple[NDArray[np.intp], NDArray[np.intp]],
+        looks: _Looks,
+        least: float,
+    ) -> tuple[_Sets, NDArray[np.intp]]:
+        """Bases (M,) and a third (M,) for each, that may come to ``least``: with the best of
+        places, and with others as rare as the rarest of these three (rarer ones would be too
+        unlike) and of the colour nearest to the first's.
+        """
+        others = len(self._model.order) - 3
+        p, third = sides
+        rarity, nearest = looks.rarity, looks.same.max(axis=1, initial=0.0)
+        first, second = np.nonzero(bases)
+        size = distances[first, second]
+        span = np.searchsorted(self._model.edges, size)
+        place = self._model.log_base(apart[first, second])
+        base = np.full(apart.shape, -np.inf)
+        base[first, second] = place + self._most[span] - 2 * (others + 1) * np.log(size)
+        base += rarity + looks.same
+        side = rarity[p] + looks.most(p, third) + others * nearest[p] + looks.unlike(p, third)
+        rarest = np.maximum(np.maximum(rarity[p], rarity[third])[:, None], rarity)
+        hope = side[:, None] + base[p] + others * rarest
+        pair, q = np.nonzero(hope >= least)
+        p, third = p[pair], third[pair]
+        which = np.zeros(apart.shape, np.intp)
+        which[first, second] = np.arange(len(first))
+        which = which[p, q]
+        pairs = _Sets(
+            members=np.stack([p, q]),
+            ends=apart[p, q],
+            span=span[which],
+            shape=np.empty((0, len(p)), complex),
+            place=place[which],
+            hope=hope[pair, q],
+            supposed=nearest[p] + rarest[pair, q],
+        )
+        return pairs, third
+
+    def _weighed(self, sets: _Sets, looks: _Looks, least: float) -> Candidates:
+        """Sets of all markers whose evidence is ``least`` or more."""
+        alike = looks.alike(sets.members)
+        less = alike - self._alike - looks.unlike(sets.members[0], sets.members[2])
+        kept = np.flatnonzero(sets.hope + less >= least)
         if not len(kept):
-            return none
-        members = sets.members[kept]
-        looks = alike[kept] + clutter.rarity_of(members) + colours.log_common(members)
-        evidence = sets.place[kept] - np.log(self._area) + looks
+            return self._none
+        members = sets.members[:, kept]
+        said = alike[kept] + looks.exactly(members)
+        evidence = sets.place[kept] - np.log(self._area) + said
         best = _best(evidence, int((evidence >= least).sum()))
-        by_marker = np.argsort(model.order)
-        return Candidates(members[best][:, by_marker], evidence[best], looks[best])
+        by_marker = np.argsort(self._model.order)
+        return Candidates(members.T[best][:, by_marker], evidence[best], said[best])
 
-    def _unlike(self, snr: Real, p: NDArray[np.intp], third: NDArray[np.intp]) -> Real:
-        """What the strengths of (M,) sides take off at least of the most that is hoped for."""
-        along = self._model.along
-        return log_unlike(snr[p], snr[third], float(along[2] - along[0]))
+
+@dataclass(frozen=True, slots=True)
+class _Looks:
+    """What the strengths and colours of N peaks say.
+
+    ``rarity`` (N,) and ``same`` (N, N): at most, see ``Clutter.rarity`` and ``Colours.most``.
+    """
+
+    snr: Real
+    along: Real
+    clutter: Clutter
+    colours: Colours
+    rarity: Real
+    same: Real
+
+    @classmethod
+    def of(cls, model: ShapeModel, snr: Real, chroma: Real, clutter: Clutter) -> _Looks:
+        colours = Colours.of(chroma, snr, clutter.near)
+        aside = len(model.order) - 1
+        return cls(
+            snr, model.along, clutter, colours, clutter.rarity(aside), colours.most(aside)
+        )
+
+    def most(self, first: NDArray[np.intp], peak: NDArray[np.intp]) -> Real:
+        """What (M,) peaks add at most to sets with a ``first``."""
+        return np.asarray(self.rarity[peak] + self.same[first, peak])
+
+    def unlike(self, p: NDArray[np.intp], third: NDArray[np.intp]) -> Real:
+        """What the strengths of (M,) sides take off at least."""
+        apart = float(self.along[2] - self.along[0])
+        return log_unlike(self.snr[p], self.snr[third], apart)
+
+    def alike(self, members: NDArray[np.intp]) -> Real:
+        """Of sets (n, M): see ``log_alike``."""
+        return log_alike(self.snr[members.T], self.along)
+
+    def exactly(self, members: NDArray[np.intp]) -> Real:
+        """Rarity and colours of sets (n, M)."""
+        return self.clutter.rarity_of(members.T) + self.colours.log_common(members.T)
 
 
 @dataclass(frozen=True, slots=True)
 class _Sets:
     """Peaks taken for the first k markers of the model's order.
 
-    ``members`` (M, k); ``ends`` (M,) and ``span`` (M,): the base and its span of sizes;
-    ``shape`` (M, k - 2); ``place`` (M,): log density of the places, the first's left out;
+    ``members`` (k, M); ``ends`` (M,) and ``span`` (M,): the base and its span of sizes;
+    ``shape`` (k - 2, M); ``place`` (M,): log density of the places, the first's left out;
     ``hope`` (M,): the most that the evidence may become; ``supposed`` (M,): what of it each of
     the markers to come is supposed to add by its strength and colour.
     """
@@ -164,30 +212,36 @@ class _Sets:
     def extended(
         self,
         step: _Step,
+        expected: Complex,
         apart: Complex,
         parent: NDArray[np.intp],
         peak: NDArray[np.intp],
-        known: Real | float,
+        more: Real,
         least: float,
     ) -> _Sets:
         """Sets ``parent`` (L,) with one more ``peak`` (L,) each, where that may still come to
-        ``least``; MAX_SETS.  ``known`` (L,): how much more than supposed each peak adds."""
-        b = apart[self.members[parent, 0], peak] / self.ends[parent]
-        span = self.span[parent]
-        density, near = step.judge(b, self.shape[parent], span)
-        hope = self.hope[parent] + density - step.log_peak[span] + known
-        near &= (self.members[parent] != peak[:, None]).all(axis=1) & (hope >= least)
+        ``least``; MAX_SETS.
+
+        ``expected`` (M,): where, see ``_Step.expected``; ``more`` (L,): how much more than was
+        supposed each peak adds at most.
+        """
+        before, span = self.members[:, parent], self.span[parent]
+        b = apart[before[0], peak] / self.ends[parent]
+        below, near = step.judge(b - expected[parent], span)
+        hope = self.hope[parent] + more - below
+        near &= (before != peak).all(axis=0) & (hope >= least)
         kept = np.flatnonzero(near)
         if len(kept) > MAX_SETS:
             kept = kept[_best(hope[kept], MAX_SETS)]
-        parent = parent[kept]
+        parent, span = parent[kept], span[kept]
         ends = self.ends[parent]
+        density = step.log_peak[span] - below[kept] - 2 * np.log(np.abs(ends))
         return _Sets(
-            np.column_stack([self.members[parent], peak[kept]]),
+            np.vstack([before[:, kept], peak[kept]]),
             ends,
-            span[kept],
-            np.column_stack([self.shape[parent], b[kept]]),
-            self.place[parent] + density[kept] - 2 * np.log(np.abs(ends)),
+            span,
+            np.vstack([self.shape[:, parent], b[kept]]),
+            self.place[parent] + density,
             hope[kept],
             self.supposed[parent],
         )
@@ -197,14 +251,16 @@ class _Sets:
 class _Step:
     """Where one more marker's b is, given those before it, for each span: a normal density.
 
-    ``mean`` (S, 2), ``gain`` (S, 2, 2k) on the deviation of the k before from ``before``
-    (S, 2k), ``inverse`` (S, 3): xx, xy, yy of the inverse covariance, ``log_peak`` (S,),
-    ``reach`` (S,): the distance that none goes beyond.
+    ``mean`` (S,) and ``before`` (k, S): the means of its b and of the k before; ``gain`` and
+    ``mirrored`` (k, S): what it follows of their deviations and of these' conjugates; ``inverse``
+    (3, S): xx, xy, yy of the inverse covariance, ``log_peak`` (S,), ``reach`` (S,): the distance
+    that none goes beyond.
     """
 
-    mean: Real
-    before: Real
-    gain: Real
+    mean: Complex
+    before: Complex
+    gain: Complex
+    mirrored: Complex
     inverse: Real
     log_peak: Real
     reach: Real
@@ -217,33 +273,31 @@ class _Step:
         # Condition by the inverse: its last block is that of the conditional distribution.
         precision = np.linalg.inv(covariance)
         own = precision[:, 2 * k :, 2 * k :]
-        gain = -np.linalg.solve(own, precision[:, 2 * k :, : 2 * k])
+        by_before = -np.linalg.solve(own, precision[:, 2 * k :, : 2 * k])
+        (xx, xy), (yx, yy) = np.moveaxis(by_before.reshape(len(noise), 2, k, 2), [1, 3], [0, 1])
+        mean = np.ascontiguousarray(model.mean[:, :size]).view(np.complex128).T
         return cls(
-            mean=np.ascontiguousarray(model.mean[:, 2 * k : size]),
-            before=model.mean[:, : 2 * k],
-            gain=gain,
-            inverse=np.asarray(own[:, [0, 0, 1], [0, 1, 1]], np.float64),
+            mean=mean[k],
+            before=mean[:k],
+            gain=(0.5 * (xx + yy + 1j * (yx - xy))).T,
+            mirrored=(0.5 * (xx - yy + 1j * (yx + xy))).T,
+            inverse=np.stack([own[:, 0, 0], own[:, 0, 1], own[:, 1, 1]]),
             log_peak=0.5 * np.linalg.slogdet(own)[1] - np.log(2 * np.pi),
             reach=np.sqrt(_NEAR / np.linalg.eigvalsh(own)[:, 0]),
         )
 
     def expected(self, before: Complex, span: NDArray[np.intp]) -> Complex:
-        """(M,) b after (M, k) others."""
-        mean = self.mean[span]
-        if self.before.shape[1]:
-            known = stacked(before) - self.before[span]
-            mean = mean + np.einsum("mij,mj->mi", self.gain[span], known)
-        return mean.view(np.complex128)[:, 0]
+        """(M,) b after (k, M) others."""
+        off = before - self.before[:, span]
+        follows = self.gain[:, span] * off + self.mirrored[:, span] * off.conj()
+        return np.asarray(self.mean[span] + follows.sum(axis=0))
 
-    def judge(
-        self, b: Complex, before: Complex, span: NDArray[np.intp]
-    ) -> tuple[Real, NDArray[np.bool_]]:
-        """Log density of (M,) b after (M, k) others, and whether it is not too far off."""
-        off = b - self.expected(before, span)
+    def judge(self, off: Complex, span: NDArray[np.intp]) -> tuple[Real, NDArray[np.bool_]]:
+        """How far below its peak the log density is (M,) off, and whether that is not too far."""
         x, y = off.real, off.imag
-        xx, xy, yy = self.inverse[span].T
+        xx, xy, yy = self.inverse[:, span]
         square = xx * x * x + 2 * xy * x * y + yy * y * y
-        return self.log_peak[span] - 0.5 * square, square < _NEAR
+        return 0.5 * square, square < _NEAR
 
 
 def _best(score: Real, most: int) -> NDArray[np.intp]:

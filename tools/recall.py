@@ -103,10 +103,11 @@ def _standing_out(scene: Composite, hue_deg: float) -> bool:
     """Whether each marker's brightest cell nearby is MIN_SNR or more, at any scale."""
     hue = round(hue_deg * HUE_RANGE / 360) % HUE_RANGE
     best = np.zeros(len(scene.pixels))
-    for scale in respond(scene.frame_bgr, hue, focal_px(CAMERA)).scales:
-        highest = cv2.dilate(scale.snr, np.ones((3, 3), np.uint8))
-        x, y = np.floor((scene.pixels + 0.5) / scale.cell).astype(int).T
-        best = np.maximum(best, highest[y, x])
+    response = respond(scene.frame_bgr, hue, focal_px(CAMERA))
+    highest = cv2.dilate(response.snr, np.ones((3, 3), np.uint8)).ravel()
+    for scale, cell in enumerate(response.layout.cells):
+        x, y = np.floor((scene.pixels + 0.5) / cell).astype(int).T
+        best = np.maximum(best, highest[response.layout.at(scale, y, x)])
     return bool((best >= MIN_SNR).all())
 
 

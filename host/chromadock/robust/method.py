@@ -54,7 +54,7 @@ class RobustMethod:
         """(H, W): the pixels of the last frame that stand out in the markers' colour."""
         if self._response is None:
             return np.zeros(self._shape, np.uint8)
-        cells = _standing_out(self._response)
+        cells = _standing_out(self._response).astype(np.uint8)
         size = self._shape[::-1]
         return np.asarray(cv2.resize(cells, size, interpolation=cv2.INTER_NEAREST), np.uint8)
 
@@ -68,7 +68,7 @@ class RobustMethod:
         response = respond(frame_bgr, look.hue, view.focal_px)
         self._response = response
         watch.lap("response")
-        peaks = {scale.cell: find_peaks(response, scale) for scale in response.scales}
+        peaks = find_peaks(response)
         watch.lap("peaks")
         candidates = []
         if look.everywhere:
@@ -92,7 +92,7 @@ class RobustMethod:
         self, best: Constellation | None, peaks: dict[int, Peaks], response: Response
     ) -> Found:
         cells = _standing_out(response)
-        passed = cv2.countNonZero(cells) / cells.size
+        passed = int(np.count_nonzero(cells)) / cells.size
         blobs = _blobs(best, peaks)
         if best is None:
             return Found("not_found", passed, blobs)
@@ -303,9 +303,9 @@ def _overlap(a: NDArray[np.float64], b: NDArray[np.float64], cell: int) -> bool:
     return bool((np.linalg.norm(a[:, None] - b[None], axis=2) < 2 * cell).any())
 
 
-def _standing_out(response: Response) -> NDArray[np.uint8]:
-    """Finest cells above the least signal to noise, 1, others 0."""
-    return (response.scales[0].snr >= MIN_SNR).astype(np.uint8)
+def _standing_out(response: Response) -> NDArray[np.bool_]:
+    """Which finest cells are above the least signal to noise."""
+    return np.asarray(response.snr[response.layout.inside(0)] >= MIN_SNR)
 
 
 def _blobs(best: Constellation | None, peaks: dict[int, Peaks]) -> tuple[Blob, ...]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.response import FINEST_CELL, Response, Scale
+from chromadock.robust.response import BORDER, FINEST_CELL, Layout, Response
 
 MIN_SNR = 3.0
 """At the finest scale.  Below it noise alone has so many peaks that no constellation could
@@ -38,7 +39,6 @@ _MOST_MISSING = 3.0
 _DOWN = np.array([0, 1, 1, 1, 0, -1, -1, -1])[:, None]
 _ACROSS = np.array([1, 1, 0, -1, -1, -1, 0, 1])[:, None]
 _RADII = np.array([2, 3])[:, None, None]
-_BORDER = 3
 _SQUARE = np.ones((3, 3), np.uint8)
 
 
@@ -61,54 +61,61 @@ class Peaks:
 _NONE = Peaks(np.empty((0, 2)), np.empty(0), np.empty(0), np.empty((0, 2)))
 
 
-def find_peaks(response: Response, scale: Scale) -> Peaks:
-    """Local maxima of one scale that a lamp may have made, MAX_PEAKS at most."""
-    least = MIN_SNR * scale.cell / FINEST_CELL
-    highest = np.asarray(cv2.dilate(scale.snr, _SQUARE))
-    summits = (scale.snr > least * _CELL_SHARE) & (scale.snr >= highest)
-    # One value in from the border, so that a peak has neighbours on all sides.
-    summits[[0, -1]] = summits[:, [0, -1]] = False
-    rows, columns = np.divmod(np.flatnonzero(summits), summits.shape[1])
-    padded = cv2.copyMakeBorder(scale.snr, *(_BORDER,) * 4, cv2.BORDER_REPLICATE)
-    values, stride = padded.ravel(), padded.shape[1]
-    at = (rows + _BORDER) * stride + columns + _BORDER
+def find_peaks(response: Response) -> dict[int, Peaks]:
+    """Local maxima that a lamp may have made, MAX_PEAKS at most of each scale; by its cells."""
+    layout, snr, stride = response.layout, response.snr, response.layout.shape[1]
+    least, worth = _thresholds(layout)
+    at = np.flatnonzero((snr > worth) & (snr >= cv2.dilate(snr, _SQUARE)))
+    values = snr.ravel()
     near, centre = values[at + _ring(stride, 1)], values[at]
-    snr = _brightest(centre, near)
-    bright = np.flatnonzero(snr >= least)
-    if not len(bright):
-        return _NONE
-    order = bright[np.argsort(-snr[bright], kind="stable")[:_MAX_SUMMITS]]
+    strength = _brightest(centre, near)
+    bright = np.flatnonzero(strength >= least[at // stride])
+    order = bright[np.argsort(-strength[bright], kind="stable")[:_MAX_SUMMITS]]
     at, near, centre = at[order], near[:, order], centre[order]
 
     shift, roundness = _paraboloid(centre, near)
     sides = values[at + _ring(stride, _RADII)]
     ridge = np.minimum(sides[:, :4], sides[:, 4:]).max(axis=(0, 1)) / centre
-    kept = np.flatnonzero((roundness > _MIN_ROUNDNESS) & (ridge < _MAX_RIDGE))
-    row, column = rows[order[kept]], columns[order[kept]]
-    added = gained(scale.light, row, column)
     per_channel = np.sqrt(np.diag(response.covariance))
-    good = (added > -_MOST_MISSING * per_channel).all(axis=1)
-    true = np.flatnonzero(good)[:MAX_PEAKS]
+    lamp = (gained(response, at) > -_MOST_MISSING * per_channel).all(axis=1)
+    true = np.flatnonzero((roundness > _MIN_ROUNDNESS) & (ridge < _MAX_RIDGE) & lamp)
     if not len(true):
-        return _NONE
-    kept, row, column = kept[true], row[true], column[true]
-    cells = np.column_stack([column, row]) + shift[:, kept].T
-    noise = np.asarray(scale.excess[row, column] / centre[kept], np.float64)
-    xy = (cells + 0.5) * scale.cell - 0.5
-    strength = snr[order[kept]].astype(np.float64)
-    chroma = response.chroma(scale, row, column)
-    return Peaks(np.asarray(xy, np.float64), strength, noise, chroma)
+        return dict.fromkeys(layout.cells, _NONE)
+    places = layout.places(at[true])
+    cell = np.array(layout.cells)[places.scale]
+    added = response.added(places)
+    noise = response.excess(added) / centre[true]
+    xy = (places.xy + shift[:, true].T + 0.5) * cell[:, None] - 0.5
+    chroma = response.chroma(added)
+    strength = strength[order[true]].astype(np.float64)
+    found = {}
+    for k, width in enumerate(layout.cells):
+        these = np.flatnonzero(places.scale == k)[:MAX_PEAKS]
+        found[width] = Peaks(xy[these], strength[these], noise[these], chroma[these])
+    return found
 
 
-def gained(
-    light: NDArray[np.float32], row: NDArray[np.intp], column: NDArray[np.intp]
-) -> NDArray[np.float32]:
-    """Light (N, 3) of cells beyond what is taken to be behind them, of (h, w, 3) light."""
-    height, width = light.shape[:2]
-    y = np.clip(row + _BORDER * _DOWN, 0, height - 1)
-    x = np.clip(column + _BORDER * _ACROSS, 0, width - 1)
-    around = light.reshape(-1, 3).take(y * width + x, axis=0)
-    return np.asarray(light[row, column] - _second(around), np.float32)
+@lru_cache(maxsize=4)
+def _thresholds(layout: Layout) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """The least signal to noise of peaks in each row, and of cells (H, W) worth a look.
+
+    One in from the border of each scale, so that a peak has neighbours on all sides.
+    """
+    least = np.full(layout.shape[0], np.inf, np.float32)
+    worth = np.full(layout.shape, np.inf, np.float32)
+    for scale, cell in enumerate(layout.cells):
+        rows, columns = layout.inside(scale)
+        least[rows] = MIN_SNR * cell / FINEST_CELL
+        inner = slice(rows.start + 1, rows.stop - 1), slice(columns.start + 1, columns.stop - 1)
+        worth[inner] = _CELL_SHARE * MIN_SNR * cell / FINEST_CELL
+    return least, worth
+
+
+def gained(response: Response, at: NDArray[np.intp]) -> NDArray[np.float32]:
+    """Light (N, 3) of cells beyond what is taken to be behind them, by their index."""
+    light = response.light.reshape(-1, 3)
+    around = light.take(at + _ring(response.layout.shape[1], BORDER), axis=0)
+    return np.asarray(light[at] - _second(around), np.float32)
 
 
 def _second(values: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from chromadock import method
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.robust.peaks import gained
-from chromadock.robust.response import Response, linear
+from chromadock.robust.response import FINEST_CELL, Response, linear
 
 _STEP = 16  # of 1536: much finer than attenuation and crosstalk let a hue be known
 _HUES = np.arange(0, method.HUE_RANGE, _STEP)
@@ -29,13 +29,13 @@ def received_hue(response: Response, xy: NDArray[np.float64]) -> int:
     A clipped core has lost its hue, so the halo beside it is looked at.  The water between and
     the camera's crosstalk turn the hue by some tens of degrees; see docs/robust.md.
     """
-    finest = response.scales[0]
-    height, width = finest.snr.shape
-    across, down = np.floor((xy + 0.5) / finest.cell).astype(np.intp).T
+    height, width = response.layout.shapes[0]
+    across, down = np.floor((xy + 0.5) / FINEST_CELL).astype(np.intp).T
     column = np.clip(across[:, None] + _NEAR[0], 0, width - 1)
     row = np.clip(down[:, None] + _NEAR[1], 0, height - 1)
-    added = gained(finest.light, row.ravel(), column.ravel())
-    whole = finest.light[row, column].reshape(-1, 3).max(axis=1) < _CLIPPED
+    at = response.layout.at(0, row, column).ravel()
+    added = gained(response, at)
+    whole = response.light.reshape(-1, 3)[at].max(axis=1) < _CLIPPED
     whitened = np.linalg.solve(response.covariance, _PURE.T.astype(np.float64))
     answer = (added[whole].sum(axis=0) @ whitened) / np.sqrt((_PURE.T * whitened).sum(axis=0))
     return int(_HUES[answer.argmax()])

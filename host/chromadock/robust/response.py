@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeVar
 
 import cv2
@@ -23,6 +24,9 @@ COARSEST_CELL_RAD = 1 / 64
 
 SURROUND_CELL = 32
 """Pixels: water changes little over it, and no marker fills it."""
+
+BORDER = 3
+"""Cells about each scale that repeat its outermost."""
 
 MIN_SIDE = 64
 """Pixels: two surrounds."""
@@ -48,19 +52,57 @@ _LEAST, _MOST = 0.9, 2.5
 _NORMAL = float(np.sqrt(np.pi / 2))
 
 
-@dataclass(frozen=True, slots=True)
-class Scale:
-    """The frame seen through square cells of ``cell`` pixels.
+@dataclass(frozen=True, eq=False, slots=True)
+class Layout:
+    """How one image holds the frame at all scales, the finest first, below each other.
 
-    ``light`` (h, w, 3) float32: linear BGR, 0..1.  ``excess`` (h, w) float32: the filtered
-    light less that of the surround.  ``snr`` (h, w) float32: the same in standard deviations
-    of its local fluctuation.
+    About each is a border of BORDER cells that repeat its outermost, so that what is around a
+    cell is at the same distances in memory wherever the cell is.
+
+    ``cells``: pixels that a cell is wide; ``tops``: the first row; ``shapes``: rows and columns,
+    border not counted; ``shape``: of the image.
     """
 
-    cell: int
-    light: NDArray[np.float32]
-    excess: NDArray[np.float32]
-    snr: NDArray[np.float32]
+    cells: tuple[int, ...]
+    tops: NDArray[np.intp]
+    shapes: NDArray[np.intp]
+    shape: tuple[int, int]
+
+    @classmethod
+    @lru_cache(maxsize=4)
+    def of(cls, height: int, width: int, coarsest: float) -> Layout:
+        """For frames of ``height`` x ``width`` pixels and cells of up to ``coarsest``."""
+        cells = [FINEST_CELL]
+        while 2 * cells[-1] <= coarsest:
+            cells.append(2 * cells[-1])
+        shapes = np.array([(height // cell, width // cell) for cell in cells])
+        ends = np.cumsum(shapes[:, 0] + 2 * BORDER)
+        tops = np.append(0, ends[:-1]) + BORDER
+        return cls(tuple(cells), tops, shapes, (int(ends[-1]), int(shapes[0, 1]) + 2 * BORDER))
+
+    def inside(self, scale: int) -> tuple[slice, slice]:
+        """Rows and columns of a scale without its border."""
+        top, (height, width) = int(self.tops[scale]), self.shapes[scale].tolist()
+        return slice(top, top + height), slice(BORDER, BORDER + width)
+
+    def at(self, scale: int, row: NDArray[np.intp], column: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Index of cells of a scale in the flat image."""
+        return np.asarray((self.tops[scale] + row) * self.shape[1] + column + BORDER)
+
+    def places(self, at: NDArray[np.intp]) -> Places:
+        """Where cells (N,) are, by their index."""
+        row, column = np.divmod(at, self.shape[1])
+        scale = np.searchsorted(self.tops, row, side="right") - 1
+        return Places(at, scale, np.array([column - BORDER, row - self.tops[scale]]).T)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Places:
+    """N cells: ``at`` (N,): index in the flat image; ``scale`` (N,); ``xy`` (N, 2): in cells."""
+
+    at: NDArray[np.intp]
+    scale: NDArray[np.intp]
+    xy: NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,24 +113,37 @@ class Response:
     ``across`` (2, 3), BGR: filters blind to the markers' colour, that fluctuate as much, each
     for itself; ``covariance`` (3, 3), BGR: of the fluctuation of cells, in linear light;
     ``surround`` (h, w, 3) float32: linear light in cells of SURROUND_CELL.
+
+    In images of all scales, see ``layout``: ``light`` (H, W, 3) float32: linear BGR, 0..1;
+    ``snr`` (H, W) float32: the filtered light less that of the surround, in standard deviations
+    of its local fluctuation.
     """
 
     weights: NDArray[np.float32]
     across: NDArray[np.float64]
     covariance: NDArray[np.float64]
     surround: NDArray[np.float32]
-    scales: tuple[Scale, ...]
+    layout: Layout
+    light: NDArray[np.float32]
+    snr: NDArray[np.float32]
 
-    def chroma(
-        self, scale: Scale, row: NDArray[np.intp], column: NDArray[np.intp]
-    ) -> NDArray[np.float64]:
-        """(N, 2) radians: how far the light that cells add is from the markers' colour."""
-        small, large = np.array(self.surround.shape[:2]), np.array(scale.snr.shape)
-        y, x = ((np.stack([row, column], 1) + 0.5) * small / large - 0.5).T.astype(np.float32)
-        behind = cv2.remap(self.surround, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-        off = (scale.light[row, column] - behind[:, 0]) @ self.across.T
-        size = np.hypot(*off.T)
-        angle = np.arctan2(size, scale.excess[row, column])
+    def added(self, places: Places) -> NDArray[np.float64]:
+        """(N, 3) linear BGR: the light of cells beyond that of the surround."""
+        larger = np.array(self.surround.shape[1::-1]) / self.layout.shapes[:, ::-1]
+        xy = ((places.xy + 0.5) * larger[places.scale] - 0.5).astype(np.float32)[:, None]
+        border = cv2.BORDER_REPLICATE
+        behind = cv2.remap(self.surround, xy, None, cv2.INTER_LINEAR, borderMode=border)
+        return np.asarray(self.light.reshape(-1, 3)[places.at] - behind[:, 0], np.float64)
+
+    def excess(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(N,) light (N, 3) through the filter."""
+        return np.asarray(added @ self.weights[0])
+
+    def chroma(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(N, 2) radians: how far light (N, 3) is from the markers' colour."""
+        off = added @ self.across.T
+        size = np.hypot(off[:, 0], off[:, 1])
+        angle = np.arctan2(size, self.excess(added))
         return np.asarray(off * (angle / np.maximum(size, 1e-9))[:, None])
 
 
@@ -110,26 +165,38 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
     frame_bgr : (H, W, 3) uint8, at least MIN_SIDE each way.
     focal_px : focal length; sets the coarsest cells.
     """
-    light = linear(_halved(_halved(frame_bgr)))
-    covariance = _fluctuation(light)
+    height, width = frame_bgr.shape[:2]
+    layout = Layout.of(height, width, min(focal_px * COARSEST_CELL_RAD, SURROUND_CELL / 2))
+    lights = [linear(_halved(_halved(frame_bgr)))]
+    covariance = _fluctuation(lights[0])
     signature = _LINEAR[list(rgb_from_hsv(hue, 255, 255))[::-1]].astype(np.float64)
     weights = _matched_filter(covariance, signature)
-    cells = [FINEST_CELL]
-    while 2 * cells[-1] <= min(focal_px * COARSEST_CELL_RAD, SURROUND_CELL / 2):
-        cells.append(2 * cells[-1])
-    lights = [light]
-    for _ in cells[1:]:
+    while len(lights) < len(layout.cells):
         lights.append(_halved(lights[-1]))
-    centres = [filtered(light, weights) for light in lights]
     surround = lights[-1]
-    for _ in range((SURROUND_CELL // cells[-1]).bit_length() - 1):
+    for _ in range((SURROUND_CELL // layout.cells[-1]).bit_length() - 1):
         surround = _halved(surround)
     behind = filtered(surround, weights)
-    scales = tuple(
-        Scale(cell, light, *_against(centre, behind))
-        for cell, light, centre in zip(cells, lights, centres, strict=True)
+    snr = [_against(filtered(light, weights), behind) for light in lights]
+    return Response(
+        weights,
+        _across(covariance, signature),
+        covariance,
+        surround,
+        layout,
+        _together(layout, lights),
+        _together(layout, snr),
     )
-    return Response(weights, _across(covariance, signature), covariance, surround, scales)
+
+
+def _together(layout: Layout, images: list[NDArray[np.float32]]) -> NDArray[np.float32]:
+    """One image of all scales' (h, w, ...), each with its border."""
+    together = np.zeros(layout.shape + images[0].shape[2:], np.float32)
+    for top, image in zip(layout.tops.tolist(), images, strict=True):
+        height, width = image.shape[:2]
+        place = together[top - BORDER : top + height + BORDER, : width + 2 * BORDER]
+        cv2.copyMakeBorder(image, *(BORDER,) * 4, cv2.BORDER_REPLICATE, place)
+    return together
 
 
 def _halved(image: NDArray[_Number]) -> NDArray[_Number]:
@@ -143,12 +210,12 @@ def _fluctuation(light: NDArray[np.float32]) -> NDArray[np.float64]:
 
     Second differences along rows (slopes cancel), without the large ones: those are edges.
     """
-    rows = light[_ROW_STEP // 2 :: _ROW_STEP]
-    bent = rows[:, 2 * _LAG :] + rows[:, : -2 * _LAG] - 2 * rows[:, _LAG:-_LAG]
-    bent = bent.reshape(-1, 3)
-    size = np.abs(bent) @ np.ones(3, np.float32)
+    rows = np.ascontiguousarray(light[_ROW_STEP // 2 :: _ROW_STEP].transpose(2, 0, 1))
+    bent = rows[..., 2 * _LAG :] + rows[..., : -2 * _LAG] - 2 * rows[..., _LAG:-_LAG]
+    bent = bent.reshape(3, -1)
+    size = np.abs(bent).sum(axis=0)
     kept = size <= _EDGE * size.mean()
-    product = bent.T @ (bent * kept[:, None])
+    product = (bent * kept) @ bent.T
     # A second difference of independent values has 1 + 1 + 4 times their variance.
     variances = product.astype(np.float64) / (6 * np.count_nonzero(kept))
     return np.asarray(variances + _QUANTUM * np.eye(3))
@@ -183,8 +250,8 @@ def _across(
 
 def _against(
     centre: NDArray[np.float32], surround: NDArray[np.float32]
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Centre less surround, and that over its local fluctuation."""
+) -> NDArray[np.float32]:
+    """Centre less surround over its local fluctuation."""
     height, width = centre.shape
     excess = centre - np.asarray(cv2.resize(surround, (width, height)), np.float32)
     blocks = (max(1, width // _BLOCK), max(1, height // _BLOCK))
@@ -193,4 +260,4 @@ def _against(
     typical = max(float(np.partition(noise, middle, axis=None)[middle]), 1e-3)
     noise = np.clip(noise, _LEAST * typical, _MOST * typical)
     noise = cv2.resize(cv2.GaussianBlur(noise, (0, 0), 1.5), (width, height))
-    return excess, np.asarray(cv2.divide(excess, noise, scale=1 / _NORMAL), np.float32)
+    return np.asarray(cv2.divide(excess, noise, scale=1 / _NORMAL), np.float32)

@@ -85,7 +85,7 @@ class Search:
         sets = pairs.extended(self._steps[0], b, apart, each, third, np.zeros(len(third)), least)
         for step in self._steps[1:]:
             if not len(sets.ends):
-                return self._none
+                break
             b = step.expected(sets.shape, sets.span)
             reach = np.abs(sets.ends) * step.reach[sets.span]
             off = apart[sets.members[0]] - (sets.ends * b)[:, None]
@@ -138,13 +138,14 @@ class Search:
 
     def _weighed(self, sets: _Sets, looks: _Looks, least: float) -> Candidates:
         """Sets of all markers whose evidence is ``least`` or more."""
-        alike = looks.alike(sets.members)
-        less = alike - self._alike - looks.unlike(sets.members[0], sets.members[2])
-        kept = np.flatnonzero(sets.hope + less >= least)
+        if not len(sets.ends):
+            return self._none
+        likely = looks.exactly(sets.members)
+        kept = np.flatnonzero(sets.hope + likely - looks.at_most(sets.members) >= least)
         if not len(kept):
             return self._none
         members = sets.members[:, kept]
-        said = alike[kept] + looks.exactly(members)
+        said = likely[kept] + looks.alike(members)
         evidence = sets.place[kept] - np.log(self._area) + said
         best = _best(evidence, int((evidence >= least).sum()))
         by_marker = np.argsort(self._model.order)
@@ -185,6 +186,10 @@ class _Looks:
     def alike(self, members: NDArray[np.intp]) -> Real:
         """Of sets (n, M): see ``log_alike``."""
         return log_alike(self.snr[members.T], self.along)
+
+    def at_most(self, members: NDArray[np.intp]) -> Real:
+        """What is supposed of ``exactly``, at most."""
+        return np.asarray(self.rarity[members].sum(axis=0) + self.same[members[0], members].sum(axis=0))
 
     def exactly(self, members: NDArray[np.intp]) -> Real:
         """Rarity and colours of sets (n, M)."""

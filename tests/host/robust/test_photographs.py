@@ -17,7 +17,7 @@ from chromadock.look import Found, Look
 from chromadock.method import HUE_RANGE
 from chromadock.robust.chroma import SPREAD
 from chromadock.robust.method import RobustMethod
-from chromadock.robust.response import respond
+from chromadock.robust.response import FINEST_CELL, respond
 from chromadock.robust.shape import focal_px
 from chromadock.stopwatch import Stopwatch
 
@@ -97,7 +97,7 @@ def test_markers_at_3_m_have_one_chroma_whatever_hue_is_looked_for(off: int) -> 
         )
         hue = (marker_hue(seen, "ternary") + off) % HUE_RANGE
         response = respond(scene.frame_bgr, hue, focal_px(CAMERA))
-        finest = response.scales[0]
-        column, row = np.floor((scene.pixels + 0.5) / finest.cell).astype(np.intp).T
-        spreads.append(response.chroma(finest, row, column).std(axis=0, ddof=1))
+        column, row = np.floor((scene.pixels + 0.5) / FINEST_CELL).astype(np.intp).T
+        places = response.layout.places(response.layout.at(0, row, column))
+        spreads.append(response.chroma(response.added(places)).std(axis=0, ddof=1))
     assert np.median(spreads) < SPREAD

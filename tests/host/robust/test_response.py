@@ -5,7 +5,14 @@ import numpy as np
 import pytest
 
 from chromadock.robust.peaks import MAX_PEAKS, find_peaks
-from chromadock.robust.response import Response, filtered, linear, respond
+from chromadock.robust.response import (
+    BORDER,
+    FINEST_CELL,
+    Response,
+    filtered,
+    linear,
+    respond,
+)
 
 FOCAL_PX = 512.0
 RED = 0  # hue
@@ -31,21 +38,23 @@ def with_lamps(frame: np.ndarray, places: np.ndarray, light: float = 0.5) -> np.
 
 def finest(response: Response) -> np.ndarray:
     """Peaks of the finest scale, (N, 2)."""
-    return find_peaks(response, response.scales[0]).xy
+    return find_peaks(response)[FINEST_CELL].xy
 
 
 def test_signal_to_noise_of_plain_water_is_a_standard_normal() -> None:
-    for scale in respond(water(), RED, FOCAL_PX).scales:
-        assert scale.snr.mean() == pytest.approx(0, abs=0.1)
-        assert scale.snr.std() == pytest.approx(1, abs=0.15)
-        assert np.mean(scale.snr > 2) == pytest.approx(0.023, abs=0.012)
+    response = respond(water(), RED, FOCAL_PX)
+    for scale in range(len(response.layout.cells)):
+        snr = response.snr[response.layout.inside(scale)]
+        assert snr.mean() == pytest.approx(0, abs=0.1)
+        assert snr.std() == pytest.approx(1, abs=0.15)
+        assert np.mean(snr > 2) == pytest.approx(0.023, abs=0.012)
 
 
 def test_no_other_filter_hears_the_markers_colour_better() -> None:
     frame = water()
     response = respond(frame, RED, FOCAL_PX)
     signature = np.array([0.0, 0.0, 1.0])
-    light = response.scales[0].light
+    light = response.light[response.layout.inside(0)]
     flat = light - cv2.blur(light, (9, 9))
 
     def heard(weights: np.ndarray) -> float:
@@ -61,11 +70,8 @@ def test_exposure_does_not_change_what_is_seen() -> None:
     dark = np.rint(water().astype(float) * 0.5 ** (1 / 2.2)).astype(np.uint8)
     places = np.array([(200.3, 150.8)])
     both = [
-        find_peaks(r, r.scales[0]).snr[0]
-        for r in (
-            respond(with_lamps(water(), places, 4), RED, FOCAL_PX),
-            respond(with_lamps(dark, places, 2), RED, FOCAL_PX),
-        )
+        find_peaks(respond(frame, RED, FOCAL_PX))[FINEST_CELL].snr[0]
+        for frame in (with_lamps(water(), places, 4), with_lamps(dark, places, 2))
     ]
     assert both[0] == pytest.approx(both[1], rel=0.35)
 
@@ -74,9 +80,7 @@ def test_lamps_are_found_to_half_a_cell_wherever_they_are() -> None:
     rng = np.random.default_rng(2)
     places = np.array([(x, y) for x in range(40, 620, 60) for y in range(40, 460, 60)], float)
     places += rng.uniform(-4, 4, places.shape)
-    peaks = find_peaks(
-        (response := respond(with_lamps(water(), places, 3), RED, FOCAL_PX)), response.scales[0]
-    )
+    peaks = find_peaks(respond(with_lamps(water(), places, 3), RED, FOCAL_PX))[FINEST_CELL]
     apart = np.linalg.norm(places[:, None] - peaks.xy[None], axis=2)
     nearest = apart.argmin(axis=0)[:MAX_PEAKS]
     assert apart.min(axis=0).max() < 2
@@ -117,6 +121,32 @@ def test_any_size_will_do(shape: tuple[int, int]) -> None:
 @pytest.mark.parametrize("value", [0, 90, 255])
 def test_a_frame_of_one_value_has_no_peaks(value: int) -> None:
     frame = np.full((480, 640, 3), value, np.uint8)
-    for scale in (response := respond(frame, RED, FOCAL_PX)).scales:
-        assert np.isfinite(scale.snr).all()
-        assert not len(find_peaks(response, scale).snr)
+    response = respond(frame, RED, FOCAL_PX)
+    assert np.isfinite(response.snr).all()
+    assert not any(len(peaks.snr) for peaks in find_peaks(response).values())
+
+
+def test_each_cell_of_the_image_of_all_scales_is_where_its_index_says() -> None:
+    layout = respond(water(), RED, FOCAL_PX).layout
+    assert layout.cells == (FINEST_CELL, 2 * FINEST_CELL)
+    index = np.arange(np.prod(layout.shape)).reshape(layout.shape)
+    for scale, (height, width) in enumerate(layout.shapes):
+        row, column = (i.ravel() for i in np.mgrid[:height, :width])
+        at = layout.at(scale, row, column)
+        assert np.array_equal(index[layout.inside(scale)].ravel(), at)
+        places = layout.places(at)
+        assert (places.scale == scale).all()
+        assert np.array_equal(places.xy, np.stack([column, row], 1))
+
+
+def test_the_border_of_each_scale_repeats_its_outermost_cells() -> None:
+    response = respond(water(), RED, FOCAL_PX)
+    for image in (response.light, response.snr):
+        for scale in range(len(response.layout.cells)):
+            rows, columns = response.layout.inside(scale)
+            framed = image[
+                rows.start - BORDER : rows.stop + BORDER,
+                columns.start - BORDER : columns.stop + BORDER,
+            ]
+            pad = [(BORDER, BORDER)] * 2 + [(0, 0)] * (image.ndim - 2)
+            assert np.array_equal(framed, np.pad(image[rows, columns], pad, mode="edge"))

@@ -62,8 +62,8 @@ class Clutter:
         ranks = members - stronger.sum(axis=2)
         beside = stronger & self.near[members[:, :, None], members[:, None, :]]
         nearby = self.nearby[members] - beside.sum(axis=2)
-        # The strongest of the others.
-        first = (np.sort(members) == np.arange(members.shape[1])).cumprod(axis=1).sum(axis=1)
+        # The strongest of the others comes after those that none of them is stronger than.
+        first = members.shape[1] - np.count_nonzero(ranks, axis=1)
         fall = self._fall(members, self.snr[first][:, None])
         return np.asarray(self._rarity(ranks, nearby, np.where(ranks, 1.0, fall)).sum(axis=1))
 

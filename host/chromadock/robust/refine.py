@@ -19,7 +19,8 @@ cells and of as many more for coarser ones: from the lens's blur to a core of a 
 and the surround of that."""
 
 WIDTH_PER_SPACING = 0.12
-"""At most, of the distance to the nearest marker, so that its light hardly pulls."""
+"""At most, of the distance between the closest markers, so that a neighbour's light hardly
+pulls."""
 SURROUND = 2.0
 """Width of the smoothing that is taken away again, by the first: a neighbour's halo slopes, but
 hardly bends, and so no longer pulls the tops of close markers together (0.2 pixels at 5 m)."""
@@ -102,8 +103,8 @@ def refined(
     apart = np.linalg.norm(xy[:, None] - xy[None], axis=2)
     np.fill_diagonal(apart, np.inf)
     found = []
-    for place, spacing, spread in zip(xy, apart.min(axis=1), noise, strict=True):
-        patch = _Patch.about(frame_bgr, place, step, weights, float(spacing) / step)
+    patches = _patches(frame_bgr, xy, step, weights, float(apart.min()) / step)
+    for patch, spread in zip(patches, noise, strict=True):
         tops = _tops(patch)
         if not tops:
             return None
@@ -158,36 +159,38 @@ class _Patch:
     middle: int
     reach: float
 
-    @classmethod
-    def about(
-        cls,
-        frame_bgr: NDArray[np.uint8],
-        xy: NDArray[np.float64],
-        step: int,
-        weights: NDArray[np.float32],
-        spacing: float,
-    ) -> _Patch:
-        """Of a lamp near ``xy``, pixels, whose nearest neighbour is ``spacing`` steps away."""
-        reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
-        widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], WIDTH_PER_SPACING * spacing)]
-        middle = int(reach + widths[-1]) + 2
-        around = middle + int(CUT_OFF * SURROUND * widths[-1])
-        side = (2 * around + 1) * step
-        corner = np.rint(xy).astype(np.intp) - side // 2
-        colour = linear(_cut(frame_bgr, *corner.tolist(), side))
-        if step > 1:
-            size = (2 * around + 1,) * 2
-            colour = np.asarray(cv2.resize(colour, size, interpolation=cv2.INTER_AREA), np.float32)
-        smoothers = _smoothers(middle, around, len(widths) + 2)
-        count, rows, columns = smoothers.shape
-        # OpenCV's product: numpy's takes twice as long, or starts threads of its own.
-        upright = cv2.gemm(
-            smoothers.reshape(-1, columns), filtered(colour, weights), 1, None, 0
-        ).reshape(count, rows, columns)
-        smoothed = upright @ smoothers.transpose(0, 2, 1)
-        # The surround of a width is the smoothing of one two places on.
-        layers = list(smoothed[:-2] - smoothed[2:])
-        return cls(corner + (around - middle) * step, layers, widths, middle, reach)
+
+def _patches(
+    frame_bgr: NDArray[np.uint8],
+    xy: NDArray[np.float64],
+    step: int,
+    weights: NDArray[np.float32],
+    spacing: float,
+) -> list[_Patch]:
+    """Of lamps near ``xy``, (n, 2) pixels, the nearest of which are ``spacing`` steps apart."""
+    reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
+    widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], WIDTH_PER_SPACING * spacing)]
+    middle = int(reach + widths[-1]) + 2
+    around = middle + int(CUT_OFF * SURROUND * widths[-1])
+    side = 2 * around + 1
+    corners = np.rint(xy).astype(np.intp) - side * step // 2
+    cuts = [linear(_cut(frame_bgr, *corner, side * step)) for corner in corners.tolist()]
+    if step > 1:
+        cuts = [cv2.resize(cut, (side, side), interpolation=cv2.INTER_AREA) for cut in cuts]
+    light = filtered(np.concatenate(cuts), weights)
+    smoothers = _smoothers(middle, around, len(widths) + 2)
+    count, rows, _ = smoothers.shape
+    # OpenCV's product: numpy's takes twice as long, or starts threads of its own.
+    across = cv2.gemm(light, smoothers.reshape(-1, side), 1, None, 0, flags=cv2.GEMM_2_T)
+    across = across.reshape(len(xy), side, count, rows).transpose(0, 2, 1, 3)
+    smoothed = smoothers @ across
+    # The surround of a width is the smoothing of one two places on.
+    layers = smoothed[:, :-2] - smoothed[:, 2:]
+    corners += (around - middle) * step
+    return [
+        _Patch(corner, list(lamp), widths, middle, reach)
+        for corner, lamp in zip(corners, layers, strict=True)
+    ]
 
 
 def _cut(image: NDArray[np.uint8], left: int, top: int, side: int) -> NDArray[np.uint8]:

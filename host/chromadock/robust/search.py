@@ -56,6 +56,7 @@ class Search:
         noise = 1.5 * (sigma_px / middles) ** 2
         self._steps = [_Step.of(model, k, noise) for k in range(len(model.order) - 2)]
         count = len(model.order)
+        self._by_marker = np.argsort(model.order)
         self._none = Candidates(np.empty((0, count), np.intp), np.empty(0), np.empty(0))
         # The most that strengths, and places given the base, may add: by the base's span.
         self._alike = float(log_alike(np.full((1, count), STRONGEST), model.along)[0])
@@ -148,8 +149,7 @@ class Search:
         said = likely[kept] + looks.alike(members)
         evidence = sets.place[kept] - np.log(self._area) + said
         best = _best(evidence, int((evidence >= least).sum()))
-        by_marker = np.argsort(self._model.order)
-        return Candidates(members.T[best][:, by_marker], evidence[best], said[best])
+        return Candidates(members[self._by_marker][:, best].T, evidence[best], said[best])
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,8 +234,8 @@ class _Sets:
         b = apart[before[0], peak] / self.ends[parent]
         below, near = step.judge(b - expected[parent], span)
         hope = self.hope[parent] + more - below
-        near &= (before != peak).all(axis=0) & (hope >= least)
-        kept = np.flatnonzero(near)
+        kept = np.flatnonzero(near & (hope >= least))
+        kept = kept[(before[:, kept] != peak[kept]).all(axis=0)]
         if len(kept) > MAX_SETS:
             kept = kept[_best(hope[kept], MAX_SETS)]
         parent, span = parent[kept], span[kept]

@@ -89,6 +89,21 @@ def test_lamps_are_found_to_half_a_cell_wherever_they_are() -> None:
     assert np.log(peaks.snr).std() < 0.2
 
 
+def test_what_a_lamp_adds_is_told_from_the_water_behind_it() -> None:
+    """Equal lamps before water that turns from dark blue to bright green."""
+    places = np.array([(x, 240.0) for x in range(52, 640, 64)])
+    across = np.linspace(0, 1, 640)[None, :, None]
+    colour = (1 - across) * np.array([90.0, 60.0, 20.0]) + across * np.array([90.0, 170.0, 60.0])
+    noise = np.random.default_rng(5).normal(0, 1.0, (480, 640, 3))
+    frame = with_lamps((colour + noise).astype(np.uint8), places, 3)
+    response = respond(frame, RED, FOCAL_PX)
+    column, row = np.floor((places + 0.5) / FINEST_CELL).astype(np.intp).T
+    added = response.added(response.layout.places(response.layout.at(0, row, column)))
+    assert added[:, 2] == pytest.approx(np.median(added[:, 2]), rel=0.15)
+    assert np.abs(added[:, :2]).max() < 0.3 * added[:, 2].min()
+    assert np.ptp(response.chroma(added), axis=0).max() < 0.3
+
+
 def test_a_lamp_shines_but_a_pole_a_shadow_and_a_blue_speck_do_not() -> None:
     frame = water()
     cv2.line(frame, (300, 40), (308, 440), (150, 110, 120), 5, cv2.LINE_AA)

@@ -24,12 +24,12 @@ pulls."""
 SURROUND = 2.0
 """Width of the smoothing that is taken away again, by the first: a neighbour's halo slopes, but
 hardly bends, and so no longer pulls the tops of close markers together (0.2 pixels at 5 m)."""
-CUT_OFF = 2
+CUT_OFF = 1.7
 """Smoothing reaches so many of its own widths: what is beyond changes no place that matters."""
 SHIFT_PER_SPACING = 1 / 3
-MAX_SHIFT = 8.0
-"""A lamp's top is looked for within this of where it was supposed: steps; half the plateau of a
-lamp that fills its cells."""
+MAX_SHIFT = 6.0
+"""A lamp's top is looked for within this of where it was supposed: steps; half the diagonal of the
+plateau of a lamp that fills 2 x 2 cells."""
 
 SAMPLING = 0.17
 """Standard error in pixels that a sensor's colour mosaic leaves the sharpest lamp: of red and of

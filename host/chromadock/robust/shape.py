@@ -125,14 +125,8 @@ class ShapeModel:
         # b moves by (dz_m - (1 - b) dz_p - b dz_q) / base.
         by_p, by_q = (1 - b) * sigma_px[:, :1], b * sigma_px[:, 1:2]
         known = by_p[:, :, None] * by_p.conj()[:, None] + by_q[:, :, None] * by_q.conj()[:, None]
-        own = np.arange(b.shape[1])
-        known[:, own, own] += sigma_px[:, 2:] ** 2
-        known /= size[:, None, None] ** 2
-        covariance = self.covariance[span]
-        covariance[:, 0::2, 0::2] += known.real
-        covariance[:, 1::2, 1::2] += known.real
-        covariance[:, 1::2, 0::2] += known.imag
-        covariance[:, 0::2, 1::2] -= known.imag
+        known += sigma_px[:, 2:, None] ** 2 * np.eye(b.shape[1])
+        covariance = self.covariance[span] + _as_real(known / size[:, None, None] ** 2)
         off = stacked(b) - self.mean[span]
         square = (off * np.linalg.solve(covariance, off[..., None])[..., 0]).sum(axis=1)
         log_norm = 0.5 * np.linalg.slogdet(2 * np.pi * covariance)[1]
@@ -142,6 +136,13 @@ class ShapeModel:
 def stacked(values: Complex) -> Real:
     """(N, m) complex to (N, 2m) real: Re, Im, Re, Im, ..."""
     return np.ascontiguousarray(values).view(np.float64)
+
+
+def _as_real(matrices: Complex) -> Real:
+    """(N, m, m) complex, that act on m complex numbers, to what they do to ``stacked`` ones."""
+    count, size, _ = matrices.shape
+    blocks = matrices[:, :, None, :, None] * np.array([[1, 1j], [-1j, 1]])[:, None]
+    return np.asarray(blocks.real.reshape(count, 2 * size, 2 * size), np.float64)
 
 
 def ideal(pixels: Real, camera: CameraModel) -> Complex:

@@ -88,9 +88,7 @@ class Colours:
         ratio = np.log((1 - DISTURBED) * pairs / clutter[:, None] + DISTURBED)
         own = np.arange(members.shape[1])
         ratio[:, own, own] = 0
-        with_each = ratio.sum(axis=2)
-        most = with_each.max(axis=1)
-        return np.asarray(most + np.log(np.exp(with_each - most[:, None]).mean(axis=1)))
+        return np.asarray(np.logaddexp.reduce(ratio.sum(axis=2), axis=1) - np.log(len(own)))
 
     def _clutter(
         self, everywhere: Real, aside: int, nearby: Real, count: NDArray[np.intp], wide: Real

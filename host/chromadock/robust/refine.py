@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import combinations
 
 import cv2
 import numpy as np
@@ -100,10 +101,8 @@ def refined(
     n of them; None where one has no top, or none that says more than where it was supposed.
     """
     step = cell // FINEST_CELL
-    apart = np.linalg.norm(xy[:, None] - xy[None], axis=2)
-    np.fill_diagonal(apart, np.inf)
     found = []
-    patches = _patches(frame_bgr, xy, step, weights, float(apart.min()) / step)
+    patches = _patches(frame_bgr, xy, step, weights, _spacing(xy) / step)
     for patch, spread in zip(patches, noise, strict=True):
         tops = _tops(patch)
         if not tops:
@@ -117,12 +116,17 @@ def refined(
     return found
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+def _spacing(xy: NDArray[np.float64]) -> float:
+    """Of the closest two of (n, 2) places."""
+    return min(math.dist(a, b) for a, b in combinations(xy.tolist(), 2))
+
+
+@dataclass(frozen=True, slots=True)
 class _Top:
-    """``at`` (2,) steps in the patch; ``error``: standard, for noise of 1 a step; ``width``;
+    """``at`` (x, y): steps in the patch; ``error``: standard, for noise of 1 a step; ``width``;
     ``sharpness``: bend over height."""
 
-    at: NDArray[np.float64]
+    at: tuple[float, float]
     error: float
     width: float
     sharpness: float
@@ -142,7 +146,7 @@ class _Top:
         shift_x = min(max(0.5 * (right - left) / across, -1.0), 1.0)
         shift_y = min(max(0.5 * (down - up) / along, -1.0), 1.0)
         sharpness = 0.5 * (across + along) / height
-        return cls(np.array([x + shift_x, y + shift_y]), error, width, sharpness)
+        return cls((x + shift_x, y + shift_y), error, width, sharpness)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -174,10 +178,12 @@ def _patches(
     around = middle + int(CUT_OFF * SURROUND * widths[-1])
     side = 2 * around + 1
     corners = np.rint(xy).astype(np.intp) - side * step // 2
-    cuts = [linear(_cut(frame_bgr, *corner, side * step)) for corner in corners.tolist()]
+    cuts = [_cut(frame_bgr, *corner, side * step) for corner in corners.tolist()]
+    colour = linear(np.concatenate(cuts))
     if step > 1:
-        cuts = [cv2.resize(cut, (side, side), interpolation=cv2.INTER_AREA) for cut in cuts]
-    light = filtered(np.concatenate(cuts), weights)
+        size = (side, side * len(xy))
+        colour = np.asarray(cv2.resize(colour, size, interpolation=cv2.INTER_AREA), np.float32)
+    light = filtered(colour, weights)
     smoothers = _smoothers(middle, around, len(widths) + 2)
     count, rows, _ = smoothers.shape
     # OpenCV's product: numpy's takes twice as long, or starts threads of its own.
@@ -229,7 +235,7 @@ def _tops(patch: _Patch) -> list[_Top]:
     tops = [replace(best, sharpness=sharpness)]
     if len(patch.widths) <= _SMALL:
         for top in _others(patch):
-            far = [np.hypot(*(top.at - other.at)) > WIDTHS[0] for other in tops]
+            far = [math.dist(top.at, other.at) > WIDTHS[0] for other in tops]
             if all(far) and len(tops) < MAX_TOPS:
                 tops.append(top)
     return tops

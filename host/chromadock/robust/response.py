@@ -214,7 +214,7 @@ def _fluctuation(light: NDArray[np.float32]) -> NDArray[np.float64]:
     bent = rows[..., 2 * _LAG :] + rows[..., : -2 * _LAG] - 2 * rows[..., _LAG:-_LAG]
     bent = bent.reshape(3, -1)
     size = np.abs(bent).sum(axis=0)
-    kept = size <= _EDGE * size.mean()
+    kept = size <= _EDGE / size.size * size.sum()
     product = (bent * kept) @ bent.T
     # A second difference of independent values has 1 + 1 + 4 times their variance.
     variances = product.astype(np.float64) / (6 * np.count_nonzero(kept))

@@ -17,7 +17,7 @@ import numpy as np
 
 from chromadock import Detector, DockGeometry
 
-ROUNDS = 31
+ROUNDS = 101
 WARM_UP = 3
 
 

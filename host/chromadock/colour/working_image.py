@@ -62,9 +62,9 @@ def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArra
     stacked = pixels.reshape(method.WORKING_HEIGHT, rows, -1)
     upright = np.add.reduce(stacked, axis=1, dtype=np.uint16)
     # OpenCV's product keeps to the threads that OpenCV is allowed; numpy's starts its own.
-    sums = cv2.gemm(
-        upright.reshape(-1, 3 * columns).astype(np.float32), _by_channel(columns), 1, None, 0
-    ).reshape(method.WORKING_HEIGHT, method.WORKING_WIDTH, 3)
+    cells = upright.reshape(-1, 3 * columns).astype(np.float32)
+    sums = cv2.gemm(cells, _by_channel(columns), 1, np.empty(0), 0)
+    sums = sums.reshape(method.WORKING_HEIGHT, method.WORKING_WIDTH, 3)
     # A count for each column: numpy is slow to repeat a single one for three channels.
     return sums.astype(np.float64), np.full((1, method.WORKING_WIDTH, 1), rows * columns)
 

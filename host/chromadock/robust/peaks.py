@@ -87,11 +87,11 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
     noise = response.excess(added) / centre[true]
     xy = (places.xy + shift[:, true].T + 0.5) * cell[:, None] - 0.5
     chroma = response.chroma(added)
-    strength = strength[order[true]].astype(np.float64)
+    strongest = strength[order[true]].astype(np.float64)
     found = {}
     for k, width in enumerate(layout.cells):
         these = np.flatnonzero(places.scale == k)[:MAX_PEAKS]
-        found[width] = Peaks(xy[these], strength[these], noise[these], chroma[these])
+        found[width] = Peaks(xy[these], strongest[these], noise[these], chroma[these])
     return found
 
 

@@ -178,7 +178,7 @@ def _patches(
     around = middle + int(CUT_OFF * SURROUND * widths[-1])
     side = 2 * around + 1
     corners = np.rint(xy).astype(np.intp) - side * step // 2
-    cuts = [_cut(frame_bgr, *corner, side * step) for corner in corners.tolist()]
+    cuts = [_cut(frame_bgr, left, top, side * step) for left, top in corners.tolist()]
     colour = linear(np.concatenate(cuts))
     if step > 1:
         size = (side, side * len(xy))
@@ -187,7 +187,7 @@ def _patches(
     smoothers = _smoothers(middle, around, len(widths) + 2)
     count, rows, _ = smoothers.shape
     # OpenCV's product: numpy's takes twice as long, or starts threads of its own.
-    across = cv2.gemm(light, smoothers.reshape(-1, side), 1, None, 0, flags=cv2.GEMM_2_T)
+    across = cv2.gemm(light, smoothers.reshape(-1, side), 1, np.empty(0), 0, flags=cv2.GEMM_2_T)
     across = across.reshape(len(xy), side, count, rows).transpose(0, 2, 1, 3)
     smoothed = smoothers @ across
     # The surround of a width is the smoothing of one two places on.

@@ -132,7 +132,7 @@ class Response:
         larger = np.array(self.surround.shape[1::-1]) / self.layout.shapes[:, ::-1]
         xy = ((places.xy + 0.5) * larger[places.scale] - 0.5).astype(np.float32)[:, None]
         border = cv2.BORDER_REPLICATE
-        behind = cv2.remap(self.surround, xy, None, cv2.INTER_LINEAR, borderMode=border)
+        behind = cv2.remap(self.surround, xy, np.empty(0), cv2.INTER_LINEAR, borderMode=border)
         return np.asarray(self.light.reshape(-1, 3)[places.at] - behind[:, 0], np.float64)
 
     def excess(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -232,9 +232,7 @@ def _matched_filter(
     return (whitened / np.sqrt(signature @ whitened)).astype(np.float32)[None]
 
 
-def _across(
-    covariance: NDArray[np.float64], signature: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _across(covariance: NDArray[np.float64], signature: NDArray[np.float64]) -> NDArray[np.float64]:
     """(2, 3) filters blind to colour s, whose noise is 1 and independent of each other's.
 
     Two vector products with s; the noise of both, and of the matched filter, is independent
@@ -248,9 +246,7 @@ def _across(
     return np.asarray(both / np.sqrt(variances)[:, None])
 
 
-def _against(
-    centre: NDArray[np.float32], surround: NDArray[np.float32]
-) -> NDArray[np.float32]:
+def _against(centre: NDArray[np.float32], surround: NDArray[np.float32]) -> NDArray[np.float32]:
     """Centre less surround over its local fluctuation."""
     height, width = centre.shape
     excess = centre - np.asarray(cv2.resize(surround, (width, height)), np.float32)

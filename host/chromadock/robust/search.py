@@ -73,19 +73,13 @@ class Search:
         """
         apart = z - z[:, None]
         distances = np.abs(apart)
-        bases = self._model.base.holds(apart, distances, self._slack)
-        # The side is short, so few pairs of peaks can be one.
-        sides = self._side.holds(apart, distances, self._slack) & bases.any(axis=1)[:, None]
-        if not sides.any():
+        triples = self._triples(apart, distances)
+        if not len(triples.hope):
             return self._none
         looks = _Looks.of(self._model, snr, chroma, Clutter.of(distances, snr, self._area))
-        pairs, third = self._begun(apart, distances, bases, np.nonzero(sides), looks, least)
-        if not len(third):
-            return self._none
-        b, each = self._steps[0].mean[pairs.span], np.arange(len(third))
-        sets = pairs.extended(self._steps[0], b, apart, each, third, np.zeros(len(third)), least)
+        sets = self._hopeful(triples, looks, least)
         for step in self._steps[1:]:
-            if not len(sets.ends):
+            if not len(sets.hope):
                 break
             b = step.expected(sets.shape, sets.span)
             reach = np.abs(sets.ends) * step.reach[sets.span]
@@ -95,51 +89,56 @@ class Search:
             sets = sets.extended(step, b, apart, parent, peak, more, least)
         return self._weighed(sets, looks, least)
 
-    def _begun(
-        self,
-        apart: Complex,
-        distances: Real,
-        bases: NDArray[np.bool_],
-        sides: tuple[NDArray[np.intp], NDArray[np.intp]],
-        looks: _Looks,
-        least: float,
-    ) -> tuple[_Sets, NDArray[np.intp]]:
-        """Bases (M,) and a third (M,) for each, that may come to ``least``: with the best of
-        places, and with others as rare as the rarest of these three (rarer ones would be too
-        unlike) and of the colour nearest to the first's.
-        """
-        others = len(self._model.order) - 3
-        p, third = sides
-        rarity, nearest = looks.rarity, looks.same.max(axis=1, initial=0.0)
-        first, second = np.nonzero(bases)
-        size = distances[first, second]
-        span = np.searchsorted(self._model.edges, size)
-        place = self._model.log_base(apart[first, second])
-        base = np.full(apart.shape, -np.inf)
-        base[first, second] = place + self._most[span] - 2 * (others + 1) * np.log(size)
-        base += rarity + looks.same
-        side = rarity[p] + looks.most(p, third) + others * nearest[p] + looks.unlike(p, third)
-        rarest = np.maximum(np.maximum(rarity[p], rarity[third])[:, None], rarity)
-        hope = side[:, None] + base[p] + others * rarest
-        pair, q = np.nonzero(hope >= least)
-        p, third = p[pair], third[pair]
-        which = np.zeros(apart.shape, np.intp)
-        which[first, second] = np.arange(len(first))
-        which = which[p, q]
-        pairs = _Sets(
-            members=np.stack([p, q]),
-            ends=apart[p, q],
-            span=span[which],
-            shape=np.empty((0, len(p)), complex),
-            place=place[which],
-            hope=hope[pair, q],
-            supposed=nearest[p] + rarest[pair, q],
+    def _triples(self, apart: Complex, distances: Real) -> _Sets:
+        """Peaks that may be p, q and the third by where they are; hoped is the best of places
+        for the others, and that strengths are alike."""
+        model, step = self._model, self._steps[0]
+        first, second = np.nonzero(model.base.holds(apart, distances, self._slack))
+        p, third = np.nonzero(self._side.holds(apart, distances, self._slack))
+        base, side = _sharing(first, p)
+        ends, size = apart[first, second], distances[first, second]
+        span = np.searchsorted(model.edges, size)
+        b = apart[p, third][side] / ends[base]
+        below, near = step.judge(b - step.mean[span[base]], span[base])
+        kept = np.flatnonzero(near & (second[base] != third[side]))
+        base, side, below = base[kept], side[kept], below[kept]
+        span, log_size = span[base], np.log(size[base])
+        place = model.log_base(ends[base]) - below
+        return _Sets(
+            members=np.stack([first[base], second[base], third[side]]),
+            ends=ends[base],
+            span=span,
+            shape=b[None, kept],
+            place=place + step.log_peak[span] - 2 * log_size,
+            hope=place + self._most[span] - 2 * len(self._steps) * log_size,
+            supposed=np.zeros(len(base)),
         )
-        return pairs, third
+
+    def _hopeful(self, triples: _Sets, looks: _Looks, least: float) -> _Sets:
+        """Those of the triples that may come to ``least``, MAX_SETS: with others as rare as the
+        rarest of the three (rarer ones would be too unlike) and of the colour nearest to the
+        first's.
+        """
+        first, second, third = triples.members
+        rarity = looks.rarity[triples.members]
+        supposed = rarity.max(axis=0) + looks.same.max(axis=1, initial=0.0)[first]
+        hope = triples.hope + rarity.sum(axis=0) + looks.unlike(first, third)
+        hope += looks.same[first, second] + looks.same[first, third]
+        hope += (len(self._steps) - 1) * supposed
+        kept = _most_hopeful(np.flatnonzero(hope >= least), hope)
+        return _Sets(
+            triples.members[:, kept],
+            triples.ends[kept],
+            triples.span[kept],
+            triples.shape[:, kept],
+            triples.place[kept],
+            hope[kept],
+            supposed[kept],
+        )
 
     def _weighed(self, sets: _Sets, looks: _Looks, least: float) -> Candidates:
         """Sets of all markers whose evidence is ``least`` or more."""
-        if not len(sets.ends):
+        if not len(sets.hope):
             return self._none
         likely = looks.exactly(sets.members)
         kept = np.flatnonzero(sets.hope + likely - looks.at_most(sets.members) >= least)
@@ -170,9 +169,7 @@ class _Looks:
     def of(cls, model: ShapeModel, snr: Real, chroma: Real, clutter: Clutter) -> _Looks:
         colours = Colours.of(chroma, snr, clutter.near)
         aside = len(model.order) - 1
-        return cls(
-            snr, model.along, clutter, colours, clutter.rarity(aside), colours.most(aside)
-        )
+        return cls(snr, model.along, clutter, colours, clutter.rarity(aside), colours.most(aside))
 
     def most(self, first: NDArray[np.intp], peak: NDArray[np.intp]) -> Real:
         """What (M,) peaks add at most to sets with a ``first``."""
@@ -189,7 +186,9 @@ class _Looks:
 
     def at_most(self, members: NDArray[np.intp]) -> Real:
         """What is supposed of ``exactly``, at most."""
-        return np.asarray(self.rarity[members].sum(axis=0) + self.same[members[0], members].sum(axis=0))
+        return np.asarray(
+            self.rarity[members].sum(axis=0) + self.same[members[0], members].sum(axis=0)
+        )
 
     def exactly(self, members: NDArray[np.intp]) -> Real:
         """Rarity and colours of sets (n, M)."""
@@ -236,8 +235,7 @@ class _Sets:
         hope = self.hope[parent] + more - below
         kept = np.flatnonzero(near & (hope >= least))
         kept = kept[(before[:, kept] != peak[kept]).all(axis=0)]
-        if len(kept) > MAX_SETS:
-            kept = kept[_best(hope[kept], MAX_SETS)]
+        kept = _most_hopeful(kept, hope)
         parent, span = parent[kept], span[kept]
         ends = self.ends[parent]
         density = step.log_peak[span] - below[kept] - 2 * np.log(np.abs(ends))
@@ -303,6 +301,22 @@ class _Step:
         xx, xy, yy = self.inverse[:, span]
         square = xx * x * x + 2 * xy * x * y + yy * y * y
         return 0.5 * square, square < _NEAR
+
+
+def _sharing(
+    first: NDArray[np.intp], p: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """All pairs of equals among (B,) and (P,), both ascending: indices (L,) into either."""
+    start = np.searchsorted(first, p)
+    each = np.searchsorted(first, p, side="right") - start
+    side = np.repeat(np.arange(len(p)), each)
+    base = np.arange(len(side)) + np.repeat(start + each - np.cumsum(each), each)
+    return base, side
+
+
+def _most_hopeful(sets: NDArray[np.intp], hope: Real) -> NDArray[np.intp]:
+    """MAX_SETS of some sets."""
+    return sets[_best(hope[sets], MAX_SETS)] if len(sets) > MAX_SETS else sets
 
 
 def _best(score: Real, most: int) -> NDArray[np.intp]:

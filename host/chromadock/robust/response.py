@@ -130,9 +130,10 @@ class Response:
     def added(self, places: Places) -> NDArray[np.float64]:
         """(N, 3) linear BGR: the light of cells beyond that of the surround."""
         larger = np.array(self.surround.shape[1::-1]) / self.layout.shapes[:, ::-1]
-        xy = ((places.xy + 0.5) * larger[places.scale] - 0.5).astype(np.float32)[:, None]
-        border = cv2.BORDER_REPLICATE
-        behind = cv2.remap(self.surround, xy, np.empty(0), cv2.INTER_LINEAR, borderMode=border)
+        xy = ((places.xy + 0.5) * larger[places.scale] - 0.5).astype(np.float32)
+        # Maps of two dimensions: OpenCV 5 makes other images of one than OpenCV 4 does.
+        x, y, border = xy[:, :1], xy[:, 1:], cv2.BORDER_REPLICATE
+        behind = cv2.remap(self.surround, x, y, cv2.INTER_LINEAR, borderMode=border)
         return np.asarray(self.light.reshape(-1, 3)[places.at] - behind[:, 0], np.float64)
 
     def excess(self, added: NDArray[np.float64]) -> NDArray[np.float64]:

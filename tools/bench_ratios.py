@@ -18,7 +18,7 @@ import numpy as np
 from chromadock import Detector, DockGeometry
 
 ROUNDS = 101
-WARM_UP = 3
+WARM_UP = 20
 
 
 @contextmanager

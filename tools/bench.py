@@ -15,7 +15,7 @@ import bench_tables
 import budgets
 from bench_memory import long_runs, resident_mib
 from bench_peers import peer_ratios
-from bench_ratios import by_cost, detector_ratios
+from bench_ratios import by_cost, detector_ratios, tracked_ratios
 from bench_scenes import LARGER, PHOTOGRAPHS, docks, enlarged, photographs, plain_water
 from bench_simulator import simulator_ratios
 from step import ROOT
@@ -72,6 +72,8 @@ def measured_host(skipped: list[str]) -> dict[str, Any]:
     """The vehicle: ratios, peers and memory."""
     host: dict[str, Any] = {}
     host["ratio_to_gaussian_blur"], host["peers"] = measured_detector(skipped)
+    host["tracked_ratio_to_gaussian_blur"] = tracked = measured_track()
+    console.print(bench_tables.tracked_table(tracked))
     host["resident_mib"] = resident_mib()
     text = bench_tables.judged(
         host["resident_mib"], budgets.RESIDENT_MIB, f"{host['resident_mib']:.0f}"
@@ -127,6 +129,18 @@ def measured_detector(skipped: list[str]) -> tuple[dict[str, float], dict[str, f
     skipped += missing
     console.print(bench_tables.peers_table(scene, ratios[scene], peers))
     return ratios, peers
+
+
+def measured_track() -> dict[str, tuple[float, float]]:
+    """Mean and 98th percentile of the detector with its track, of frames without a dock."""
+    measured = {"plain water": tracked_ratios({WATER: plain_water()})[WATER]}
+    real = tracked_ratios(photographs())
+    if real:
+        order = sorted(real, key=lambda name: real[name])
+        median, worst = order[len(order) // 2], order[-1]
+        measured[f"median of {len(real)} photographs: {median}"] = real[median]
+        measured[f"worst of them: {worst}"] = real[worst]
+    return measured
 
 
 def larger_frames(photograph: Any) -> dict[str, Any]:

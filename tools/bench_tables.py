@@ -85,6 +85,17 @@ def ratios_table(
     return table
 
 
+def tracked_table(ratios: Mapping[str, tuple[float, float]]) -> Table:
+    """With the track: the mean and the 98th percentile by what the frame is called."""
+    table = Table(title="with the track, 30 frames a second: times a 5x5 Gaussian blur")
+    table.add_column("frame")
+    table.add_column("mean", justify="right")
+    table.add_column("98 %", justify="right")
+    for called, (mean, longest) in ratios.items():
+        table.add_row(called, f"{mean:.2f}", f"{longest:.2f}")
+    return table
+
+
 def peers_table(scene: str, own: float, peers: Mapping[str, float]) -> Table:
     """The whole detector beside a part of one and another kind of one, on the same frame."""
     table = Table(title=f"peers, {scene}: times a 5x5 Gaussian blur of it")

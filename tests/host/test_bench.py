@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from bench_memory import LongRun, long_runs
 from bench_peers import SETTINGS, mask_of, peer_ratios
-from bench_ratios import by_cost, detector_ratios, one_thread, ratio, totals
+from bench_ratios import by_cost, detector_ratios, one_thread, ratio, totals, tracked_ratios
 from bench_scenes import LARGER, VGA, docks, enlarged, photographs, plain_water
 from rich.console import Console
 from rich.table import Table
@@ -43,6 +43,11 @@ def test_a_scene_has_a_ratio_and_one_for_each_stage_which_sum_up_to_it(method: s
     parts = [value for name, value in ratios.items() if "/" in name]
     assert sum(parts) == pytest.approx(ratios["water"], abs=0.01)
     assert min(parts) >= 0 and totals(ratios) == {"water": ratios["water"]}
+
+
+def test_with_the_track_the_mean_is_not_beyond_the_longest() -> None:
+    (mean, longest) = tracked_ratios({"water": plain_water()}, frames=3)["water"]
+    assert 0 < mean <= longest
 
 
 def test_a_ratio_is_the_works_time_over_the_blurs(monkeypatch: Any) -> None:

@@ -73,11 +73,11 @@ class Search:
         """
         apart = z - z[:, None]
         distances = np.abs(apart)
-        triples = self._triples(apart, distances)
+        triples = self._triples(apart, distances, snr)
         if not len(triples.hope):
             return self._none
         looks = _Looks.of(self._model, snr, chroma, Clutter.of(distances, snr, self._area))
-        sets = self._hopeful(triples, looks, least)
+        sets = triples.hopeful(looks, least)
         for step in self._steps[1:]:
             if not len(sets.hope):
                 break
@@ -85,13 +85,11 @@ class Search:
             reach = np.abs(sets.ends) * step.reach[sets.span]
             off = apart[sets.members[0]] - (sets.ends * b)[:, None]
             parent, peak = np.nonzero(np.abs(off) < reach[:, None])
-            more = looks.most(sets.members[0, parent], peak) - sets.supposed[parent]
-            sets = sets.extended(step, b, apart, parent, peak, more, least)
+            sets = sets.extended(step, b, apart, parent, peak).hopeful(looks, least)
         return self._weighed(sets, looks, least)
 
-    def _triples(self, apart: Complex, distances: Real) -> _Sets:
-        """Peaks that may be p, q and the third by where they are; hoped is the best of places
-        for the others, and that strengths are alike."""
+    def _triples(self, apart: Complex, distances: Real, snr: Real) -> _Sets:
+        """Peaks that may be p, q and the third by where they are."""
         model, step = self._model, self._steps[0]
         first, second = np.nonzero(model.base.holds(apart, distances, self._slack))
         p, third = np.nonzero(self._side.holds(apart, distances, self._slack))
@@ -104,36 +102,15 @@ class Search:
         base, side, below = base[kept], side[kept], below[kept]
         span, log_size = span[base], np.log(size[base])
         place = model.log_base(ends[base]) - below
+        members = np.stack([first[base], second[base], third[side]])
+        unlike = log_unlike(*snr[members[::2]], float(model.along[2] - model.along[0]))
         return _Sets(
-            members=np.stack([first[base], second[base], third[side]]),
+            members=members,
             ends=ends[base],
             span=span,
             shape=b[None, kept],
             place=place + step.log_peak[span] - 2 * log_size,
-            hope=place + self._most[span] - 2 * len(self._steps) * log_size,
-            supposed=np.zeros(len(base)),
-        )
-
-    def _hopeful(self, triples: _Sets, looks: _Looks, least: float) -> _Sets:
-        """Those of the triples that may come to ``least``, MAX_SETS: with others as rare as the
-        rarest of the three (rarer ones would be too unlike) and of the colour nearest to the
-        first's.
-        """
-        first, second, third = triples.members
-        rarity = looks.rarity[triples.members]
-        supposed = rarity.max(axis=0) + looks.same.max(axis=1, initial=0.0)[first]
-        hope = triples.hope + rarity.sum(axis=0) + looks.unlike(first, third)
-        hope += looks.same[first, second] + looks.same[first, third]
-        hope += (len(self._steps) - 1) * supposed
-        kept = _most_hopeful(np.flatnonzero(hope >= least), hope)
-        return _Sets(
-            triples.members[:, kept],
-            triples.ends[kept],
-            triples.span[kept],
-            triples.shape[:, kept],
-            triples.place[kept],
-            hope[kept],
-            supposed[kept],
+            hope=place + unlike + self._most[span] - 2 * len(self._steps) * log_size,
         )
 
     def _weighed(self, sets: _Sets, looks: _Looks, least: float) -> Candidates:
@@ -141,7 +118,7 @@ class Search:
         if not len(sets.hope):
             return self._none
         likely = looks.exactly(sets.members)
-        kept = np.flatnonzero(sets.hope + likely - looks.at_most(sets.members) >= least)
+        kept = np.flatnonzero(sets.hope + likely >= least)
         if not len(kept):
             return self._none
         members = sets.members[:, kept]
@@ -155,7 +132,8 @@ class Search:
 class _Looks:
     """What the strengths and colours of N peaks say.
 
-    ``rarity`` (N,) and ``same`` (N, N): at most, see ``Clutter.rarity`` and ``Colours.most``.
+    At most, ``rarity`` (N,): see ``Clutter.rarity``; ``same`` (N, N): see ``Colours.most``, and
+    ``nearest`` (N,): of the colour nearest to each one's.
     """
 
     snr: Real
@@ -164,31 +142,30 @@ class _Looks:
     colours: Colours
     rarity: Real
     same: Real
+    nearest: Real
 
     @classmethod
     def of(cls, model: ShapeModel, snr: Real, chroma: Real, clutter: Clutter) -> _Looks:
         colours = Colours.of(chroma, snr, clutter.near)
         aside = len(model.order) - 1
-        return cls(snr, model.along, clutter, colours, clutter.rarity(aside), colours.most(aside))
+        same = colours.most(aside)
+        nearest = same.max(axis=1, initial=0.0)
+        return cls(snr, model.along, clutter, colours, clutter.rarity(aside), same, nearest)
 
-    def most(self, first: NDArray[np.intp], peak: NDArray[np.intp]) -> Real:
-        """What (M,) peaks add at most to sets with a ``first``."""
-        return np.asarray(self.rarity[peak] + self.same[first, peak])
-
-    def unlike(self, p: NDArray[np.intp], third: NDArray[np.intp]) -> Real:
-        """What the strengths of (M,) sides take off at least."""
-        apart = float(self.along[2] - self.along[0])
-        return log_unlike(self.snr[p], self.snr[third], apart)
+    def at_most(self, members: NDArray[np.intp]) -> Real:
+        """Rarity and colours of sets whose first k members are (k, M), at most: if the others
+        were as rare as the rarest of them (rarer ones would be too unlike) and of the colour
+        nearest to that of the one that has the dock's.
+        """
+        others = len(self.along) - len(members)
+        rarity = self.rarity[members]
+        same = self.same.take(members[:, None] * len(self.rarity) + members).sum(axis=1)
+        same += others * self.nearest[members]
+        return np.asarray(rarity.sum(axis=0) + others * rarity.max(axis=0) + same.max(axis=0))
 
     def alike(self, members: NDArray[np.intp]) -> Real:
         """Of sets (n, M): see ``log_alike``."""
         return log_alike(self.snr[members.T], self.along)
-
-    def at_most(self, members: NDArray[np.intp]) -> Real:
-        """What is supposed of ``exactly``, at most."""
-        return np.asarray(
-            self.rarity[members].sum(axis=0) + self.same[members[0], members].sum(axis=0)
-        )
 
     def exactly(self, members: NDArray[np.intp]) -> Real:
         """Rarity and colours of sets (n, M)."""
@@ -201,8 +178,7 @@ class _Sets:
 
     ``members`` (k, M); ``ends`` (M,) and ``span`` (M,): the base and its span of sizes;
     ``shape`` (k - 2, M); ``place`` (M,): log density of the places, the first's left out;
-    ``hope`` (M,): the most that the evidence may become; ``supposed`` (M,): what of it each of
-    the markers to come is supposed to add by its strength and colour.
+    ``hope`` (M,): the most that the evidence may become, without rarity and colours.
     """
 
     members: NDArray[np.intp]
@@ -211,7 +187,6 @@ class _Sets:
     shape: Complex
     place: Real
     hope: Real
-    supposed: Real
 
     def extended(
         self,
@@ -220,33 +195,37 @@ class _Sets:
         apart: Complex,
         parent: NDArray[np.intp],
         peak: NDArray[np.intp],
-        more: Real,
-        least: float,
     ) -> _Sets:
-        """Sets ``parent`` (L,) with one more ``peak`` (L,) each, where that may still come to
-        ``least``; MAX_SETS.
-
-        ``expected`` (M,): where, see ``_Step.expected``; ``more`` (L,): how much more than was
-        supposed each peak adds at most.
-        """
+        """Sets ``parent`` (L,) with one more ``peak`` (L,) each, if that is not too far from
+        where it is expected: (M,), see ``_Step.expected``."""
         before, span = self.members[:, parent], self.span[parent]
         b = apart[before[0], peak] / self.ends[parent]
         below, near = step.judge(b - expected[parent], span)
-        hope = self.hope[parent] + more - below
-        kept = np.flatnonzero(near & (hope >= least))
-        kept = kept[(before[:, kept] != peak[kept]).all(axis=0)]
-        kept = _most_hopeful(kept, hope)
-        parent, span = parent[kept], span[kept]
+        kept = np.flatnonzero(near & (before != peak).all(axis=0))
+        parent, span, below = parent[kept], span[kept], below[kept]
         ends = self.ends[parent]
-        density = step.log_peak[span] - below[kept] - 2 * np.log(np.abs(ends))
         return _Sets(
             np.vstack([before[:, kept], peak[kept]]),
             ends,
             span,
             np.vstack([self.shape[:, parent], b[kept]]),
-            self.place[parent] + density,
-            hope[kept],
-            self.supposed[parent],
+            self.place[parent] + step.log_peak[span] - below - 2 * np.log(np.abs(ends)),
+            self.hope[parent] - below,
+        )
+
+    def hopeful(self, looks: _Looks, least: float) -> _Sets:
+        """Those that may come to ``least``, MAX_SETS."""
+        hope = self.hope + looks.at_most(self.members)
+        kept = np.flatnonzero(hope >= least)
+        if len(kept) > MAX_SETS:
+            kept = kept[_best(hope[kept], MAX_SETS)]
+        return _Sets(
+            self.members[:, kept],
+            self.ends[kept],
+            self.span[kept],
+            self.shape[:, kept],
+            self.place[kept],
+            self.hope[kept],
         )
 
 
@@ -312,11 +291,6 @@ def _sharing(
     side = np.repeat(np.arange(len(p)), each)
     base = np.arange(len(side)) + np.repeat(start + each - np.cumsum(each), each)
     return base, side
-
-
-def _most_hopeful(sets: NDArray[np.intp], hope: Real) -> NDArray[np.intp]:
-    """MAX_SETS of some sets."""
-    return sets[_best(hope[sets], MAX_SETS)] if len(sets) > MAX_SETS else sets
 
 
 def _best(score: Real, most: int) -> NDArray[np.intp]:

@@ -46,8 +46,8 @@ class Clutter:
         """From the (N, N) distances of peaks in order of strength (N,), and the frame's area."""
         radius = _NEIGHBOURHOOD * float(np.sqrt(frame_area))
         near = distances < radius
-        nearby = np.count_nonzero(near & _stronger(len(near)), axis=1)
-        return cls(frame_area, np.pi * radius**2, near, nearby, np.append(snr, MIN_SNR))
+        nearby = (near & _stronger(len(near))).sum(axis=1)
+        return cls(frame_area, np.pi * radius**2, near, nearby, np.concatenate([snr, [MIN_SNR]]))
 
     def rarity(self, aside: int) -> NDArray[np.float64]:
         """(N,) rarity of each peak, ``aside`` of the stronger ones not counted as clutter."""
@@ -63,7 +63,7 @@ class Clutter:
         beside = stronger & self.near[members[:, :, None], members[:, None, :]]
         nearby = self.nearby[members] - beside.sum(axis=2)
         # The strongest of the others comes after those that none of them is stronger than.
-        first = members.shape[1] - np.count_nonzero(ranks, axis=1)
+        first = (ranks == 0).sum(axis=1)
         fall = self._fall(members, self.snr[first][:, None])
         return np.asarray(self._rarity(ranks, nearby, np.where(ranks, 1.0, fall)).sum(axis=1))
 

@@ -255,6 +255,6 @@ def _against(centre: NDArray[np.float32], surround: NDArray[np.float32]) -> NDAr
     noise = cv2.resize(np.abs(excess), blocks, interpolation=cv2.INTER_AREA)
     middle = noise.size // 2
     typical = max(float(np.partition(noise, middle, axis=None)[middle]), 1e-3)
-    noise = np.clip(noise, _LEAST * typical, _MOST * typical)
+    noise = np.minimum(np.maximum(noise, _LEAST * typical), _MOST * typical)
     noise = cv2.resize(cv2.GaussianBlur(noise, (0, 0), 1.5), (width, height))
     return np.asarray(cv2.divide(excess, noise, scale=1 / _NORMAL), np.float32)

@@ -102,7 +102,7 @@ class Search:
         base, side, below = base[kept], side[kept], below[kept]
         span, log_size = span[base], np.log(size[base])
         place = model.log_base(ends[base]) - below
-        members = np.stack([first[base], second[base], third[side]])
+        members = np.array([first[base], second[base], third[side]])
         unlike = log_unlike(*snr[members[::2]], float(model.along[2] - model.along[0]))
         return _Sets(
             members=members,
@@ -205,10 +205,10 @@ class _Sets:
         parent, span, below = parent[kept], span[kept], below[kept]
         ends = self.ends[parent]
         return _Sets(
-            np.vstack([before[:, kept], peak[kept]]),
+            np.concatenate([before[:, kept], peak[None, kept]]),
             ends,
             span,
-            np.vstack([self.shape[:, parent], b[kept]]),
+            np.concatenate([self.shape[:, parent], b[None, kept]]),
             self.place[parent] + step.log_peak[span] - below - 2 * np.log(np.abs(ends)),
             self.hope[parent] - below,
         )

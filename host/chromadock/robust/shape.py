@@ -11,6 +11,7 @@ Places are complex numbers x + iy in ideal pixels: focal length times tangent, n
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -60,7 +61,7 @@ class Window:
     def holds(self, displacements: Complex, distances: Real, slack: float) -> NDArray[np.bool_]:
         """Which displacements, known to ``slack``, lie inside."""
         turned = displacements * self.direction.conjugate()
-        wide = np.abs(turned.imag) < np.tan(self.half_angle) * turned.real + slack
+        wide = np.abs(turned.imag) < math.tan(self.half_angle) * turned.real + slack
         long = (distances > self.shortest - slack) & (distances < self.longest + slack)
         return np.asarray(wide & long)
 

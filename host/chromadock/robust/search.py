@@ -103,7 +103,8 @@ class Search:
         span, log_size = span[base], np.log(size[base])
         place = model.log_base(ends[base]) - below
         members = np.array([first[base], second[base], third[side]])
-        unlike = log_unlike(*snr[members[::2]], float(model.along[2] - model.along[0]))
+        along = float(model.along[2] - model.along[0])
+        unlike = log_unlike(snr[members[0]], snr[members[2]], along)
         return _Sets(
             members=members,
             ends=ends[base],

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import combinations
 
 import cv2
 import numpy as np
@@ -22,6 +21,9 @@ and the surround of that."""
 WIDTH_PER_SPACING = 0.12
 """At most, of the distance between the closest markers, so that a neighbour's light hardly
 pulls."""
+ROOMY = 2.0
+"""Markers with so many times the room of the closest ones, as those out of the others' plane, are
+looked at for themselves; the rest alike, by the closest."""
 SURROUND = 2.0
 """Width of the smoothing that is taken away again, by the first: a neighbour's halo slopes, but
 hardly bends, and so no longer pulls the tops of close markers together (0.2 pixels at 5 m)."""
@@ -101,14 +103,18 @@ def refined(
     n of them; None where one has no top, or none that says more than where it was supposed.
     """
     step = cell // FINEST_CELL
+    patches: dict[int, _Patch] = {}
+    for lamps, spacing in _by_spacing(xy):
+        cut = _patches(frame_bgr, xy[lamps], step, weights, spacing / step)
+        patches.update(zip(lamps, cut, strict=True))
     found = []
-    patches = _patches(frame_bgr, xy, step, weights, _spacing(xy) / step)
-    for patch, spread in zip(patches, noise, strict=True):
+    for lamp, spread in enumerate(noise.tolist()):
+        patch = patches[lamp]
         tops = _tops(patch)
         if not tops:
             return None
         # A cell is so many steps wide, and independent noise averages out by as much.
-        per_noise = INFLATION * FINEST_CELL * float(spread)
+        per_noise = INFLATION * FINEST_CELL * spread
         places = _in_pixels(tops, patch.corner, step, per_noise)
         if places.sigma[0] > MAX_SHIFT * step:
             return None
@@ -116,9 +122,14 @@ def refined(
     return found
 
 
-def _spacing(xy: NDArray[np.float64]) -> float:
-    """Of the closest two of (n, 2) places."""
-    return min(math.dist(a, b) for a, b in combinations(xy.tolist(), 2))
+def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
+    """Which of (n, 2) places have about as little room as any, and which more; and the least
+    distance of each to another place, pixels."""
+    places = xy.tolist()
+    room = [min(math.dist(a, b) for b in places if b is not a) for a in places]
+    crowded = [k for k, own in enumerate(room) if own < ROOMY * min(room)]
+    others = [k for k in range(len(room)) if k not in crowded]
+    return [(which, min(room[k] for k in which)) for which in (crowded, others) if which]
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +182,7 @@ def _patches(
     weights: NDArray[np.float32],
     spacing: float,
 ) -> list[_Patch]:
-    """Of lamps near ``xy``, (n, 2) pixels, the nearest of which are ``spacing`` steps apart."""
+    """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker."""
     reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
     widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], WIDTH_PER_SPACING * spacing)]
     middle = int(reach + widths[-1]) + 2

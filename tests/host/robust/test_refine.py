@@ -62,6 +62,18 @@ def test_neighbours_do_not_melt_into_one() -> None:
     assert np.array([tops.xy[0] for tops in found]) == pytest.approx(places, abs=0.5)
 
 
+def test_a_large_lamp_with_room_is_located_beside_small_ones_without() -> None:
+    """As a marker out of the others' plane is: nearer, and so larger."""
+    rng = np.random.default_rng(4)
+    small, large = np.array([(60.0, 70.0), (60.0, 84.0)]), np.array([(170.0, 80.0)])
+    both = [frame_with(small, 0.5, 0.4, rng), frame_with(large, 9.0, 12.0, rng)]
+    frame = np.maximum(*both)
+    places = np.concatenate([small, large])
+    found = refined(frame, places + 1.0, 4, seen(frame).weights, np.ones(3))
+    assert found is not None
+    assert np.array([tops.xy[0] for tops in found]) == pytest.approx(places, abs=0.3)
+
+
 def test_a_lamp_beside_a_glint_is_among_the_places() -> None:
     """Two small lamps; the glint beside the first is the brighter of the two."""
     rng = np.random.default_rng(3)

@@ -34,6 +34,9 @@ MAX_SHIFT = 6.0
 """A lamp's top is looked for within this of where it was supposed: steps; half the diagonal of the
 plateau of a lamp that fills 2 x 2 cells."""
 
+CLIPPED = 250
+"""Pixels of such a value, of 255, may have been brighter: JPEG takes some off."""
+
 SAMPLING = 0.17
 """Standard error in pixels that a sensor's colour mosaic leaves the sharpest lamp: of red and of
 blue light it sees every fourth pixel."""
@@ -190,11 +193,10 @@ def _patches(
     side = 2 * around + 1
     corners = np.rint(xy).astype(np.intp) - side * step // 2
     cuts = [_cut(frame_bgr, left, top, side * step) for left, top in corners.tolist()]
-    colour = linear(np.concatenate(cuts))
+    light = _shining(np.concatenate(cuts), weights)
     if step > 1:
         size = (side, side * len(xy))
-        colour = np.asarray(cv2.resize(colour, size, interpolation=cv2.INTER_AREA), np.float32)
-    light = filtered(colour, weights)
+        light = np.asarray(cv2.resize(light, size, interpolation=cv2.INTER_AREA), np.float32)
     smoothers = _smoothers(middle, around, len(widths) + 2)
     count, rows, _ = smoothers.shape
     # OpenCV's product: numpy's takes twice as long, or starts threads of its own.
@@ -208,6 +210,20 @@ def _patches(
         _Patch(corner, list(lamp), widths, middle, reach)
         for corner, lamp in zip(corners, layers, strict=True)
     ]
+
+
+def _shining(pixels: NDArray[np.uint8], weights: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Filtered light (h, w) of (h, w, 3) pixels.
+
+    What a clipped channel says is too little.  Where one is, the others take nothing away: or a
+    lamp's core, which clips in more of them than its halo, would be a hole in it.
+    """
+    colour = linear(pixels)
+    light = filtered(colour, weights)
+    if pixels.max(initial=0) >= CLIPPED:
+        clipped = (pixels >= CLIPPED).any(axis=2)
+        light[clipped] = filtered(colour, np.maximum(weights, 0))[clipped]
+    return light
 
 
 def _cut(image: NDArray[np.uint8], left: int, top: int, side: int) -> NDArray[np.uint8]:

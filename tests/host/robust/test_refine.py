@@ -62,6 +62,23 @@ def test_neighbours_do_not_melt_into_one() -> None:
     assert np.array([tops.xy[0] for tops in found]) == pytest.approx(places, abs=0.5)
 
 
+def test_a_core_that_clips_in_more_channels_than_its_halo_is_no_hole() -> None:
+    """Red clips far about the lamp, green at its core only, and the filter takes green away."""
+    y, x = np.mgrid[0:160, 0:240].astype(float)
+    places = np.array([(60.3, 80.6), (170.4, 76.2), (171.0, 120.0)])
+    light = np.tile(np.array([0.02, 0.15, 0.3]), (160, 240, 1))
+    for px, py in places:
+        away = np.hypot(x - px, y - py)
+        light[..., 2] += 3 * np.exp(-away / 4)
+        light[..., 1] += 2 * np.exp(-0.5 * (away / 2) ** 2)
+    noise = np.random.default_rng(5).normal(0, 2, light.shape)
+    frame = np.clip(np.rint(255 * np.clip(light, 0, 1) ** (1 / 2.2) + noise), 0, 255)
+    weights = np.array([[-0.2, -1.0, 1.0]], np.float32)
+    found = refined(frame.astype(np.uint8), places + 1.5, 8, weights, np.ones(3) * 0.02)
+    assert found is not None
+    assert np.array([tops.xy[0] for tops in found]) == pytest.approx(places, abs=0.5)
+
+
 def test_a_large_lamp_with_room_is_located_beside_small_ones_without() -> None:
     """As a marker out of the others' plane is: nearer, and so larger."""
     rng = np.random.default_rng(4)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import cv2
@@ -27,7 +27,7 @@ looked at for themselves; the rest alike, by the closest."""
 SURROUND = 2.0
 """Width of the smoothing that is taken away again, by the first: a neighbour's halo slopes, but
 hardly bends, and so no longer pulls the tops of close markers together (0.2 pixels at 5 m)."""
-CUT_OFF = 1.7
+CUT_OFF = 1.5
 """Smoothing reaches so many of its own widths: what is beyond changes no place that matters."""
 SHIFT_PER_SPACING = 1 / 3
 MAX_SHIFT = 6.0
@@ -188,7 +188,7 @@ def _patches(
     """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker."""
     reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
     widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], WIDTH_PER_SPACING * spacing)]
-    middle = int(reach + widths[-1]) + 2
+    middle = int(reach + widths[-1]) + 1
     around = middle + int(CUT_OFF * SURROUND * widths[-1])
     side = 2 * around + 1
     corners = np.rint(xy).astype(np.intp) - side * step // 2
@@ -259,7 +259,7 @@ def _tops(patch: _Patch) -> list[_Top]:
             best = top
     if best is None:
         return []
-    tops = [replace(best, sharpness=sharpness)]
+    tops = [_Top(best.at, best.error, best.width, sharpness)]
     if len(patch.widths) <= _SMALL:
         for top in _others(patch):
             far = [math.dist(top.at, other.at) > WIDTHS[0] for other in tops]

@@ -6,6 +6,7 @@ Both sides run: the dock's colour is the firmware core's, the vehicle's side is 
 from __future__ import annotations
 
 import multiprocessing
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -92,6 +93,8 @@ def read_approaches(path: Path) -> list[Approach]:
 def run_all(approaches: Sequence[Approach]) -> pl.DataFrame:
     """All of them, one a process at a time; the same in any number of processes."""
     context = multiprocessing.get_context("spawn")  # OpenCV's threads do not survive a fork
+    # Children load numpy anew: without threads of its own, of which there would be too many.
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
     with ProcessPoolExecutor(processors(), context) as pool:
         return pl.concat(pool.map(run, approaches))
 

@@ -20,10 +20,11 @@ from chromadock.profile import widened
 from chromadock.robust.acceptance import HOPEFUL, LEAST_EVIDENCE, Constellation, rigid
 from chromadock.robust.guided import Guess, guided
 from chromadock.robust.incomplete import Incomplete
+from chromadock.robust.layout import FINEST_CELL
 from chromadock.robust.peaks import MIN_SNR, Peaks, find_peaks
 from chromadock.robust.received import received_hue
 from chromadock.robust.refine import Tops, refined
-from chromadock.robust.response import FINEST_CELL, MIN_SIDE, Response, respond
+from chromadock.robust.response import MIN_SIDE, Response, respond
 from chromadock.robust.search import Search
 from chromadock.robust.shape import ShapeModel, focal_px, ideal
 from chromadock.robust.twin import is_image_of

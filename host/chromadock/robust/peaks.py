@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.response import BORDER, FINEST_CELL, Layout, Response
+from chromadock.robust.layout import BORDER, FINEST_CELL, Layout
+from chromadock.robust.response import Response
 
 MIN_SNR = 3.0
 """At the finest scale.  Below it noise alone has so many peaks that no constellation could

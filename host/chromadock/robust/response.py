@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TypeVar
 
 import cv2
@@ -11,22 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.colour.hsv import rgb_from_hsv
+from chromadock.robust.layout import Layout, Places
 
 GAMMA = 2.2
 """Of cameras whose pictures are meant for screens (sRGB is within 1% of it)."""
-
-FINEST_CELL = 4
-"""Pixels: the lens, the halo and JPEG spread a far marker's light about as wide, so that a
-finer grid only adds noise."""
 
 COARSEST_CELL_RAD = 1 / 64
 """As wide as a marker's glare looks from where the dock just fits into the picture."""
 
 SURROUND_CELL = 32
 """Pixels: water changes little over it, and no marker fills it."""
-
-BORDER = 3
-"""Cells about each scale that repeat its outermost."""
 
 MIN_SIDE = 64
 """Pixels: two surrounds."""
@@ -50,59 +43,6 @@ _BLOCK = 8
 _LEAST, _MOST = 0.9, 2.5
 # Mean absolute value to standard deviation of a normal variable.
 _NORMAL = float(np.sqrt(np.pi / 2))
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Layout:
-    """How one image holds the frame at all scales, the finest first, below each other.
-
-    About each is a border of BORDER cells that repeat its outermost, so that what is around a
-    cell is at the same distances in memory wherever the cell is.
-
-    ``cells``: pixels that a cell is wide; ``tops``: the first row; ``shapes``: rows and columns,
-    border not counted; ``shape``: of the image.
-    """
-
-    cells: tuple[int, ...]
-    tops: NDArray[np.intp]
-    shapes: NDArray[np.intp]
-    shape: tuple[int, int]
-
-    @classmethod
-    @lru_cache(maxsize=4)
-    def of(cls, height: int, width: int, coarsest: float) -> Layout:
-        """For frames of ``height`` x ``width`` pixels and cells of up to ``coarsest``."""
-        cells = [FINEST_CELL]
-        while 2 * cells[-1] <= coarsest:
-            cells.append(2 * cells[-1])
-        shapes = np.array([(height // cell, width // cell) for cell in cells])
-        ends = np.cumsum(shapes[:, 0] + 2 * BORDER)
-        tops = np.append(0, ends[:-1]) + BORDER
-        return cls(tuple(cells), tops, shapes, (int(ends[-1]), int(shapes[0, 1]) + 2 * BORDER))
-
-    def inside(self, scale: int) -> tuple[slice, slice]:
-        """Rows and columns of a scale without its border."""
-        top, (height, width) = int(self.tops[scale]), self.shapes[scale].tolist()
-        return slice(top, top + height), slice(BORDER, BORDER + width)
-
-    def at(self, scale: int, row: NDArray[np.intp], column: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Index of cells of a scale in the flat image."""
-        return np.asarray((self.tops[scale] + row) * self.shape[1] + column + BORDER)
-
-    def places(self, at: NDArray[np.intp]) -> Places:
-        """Where cells (N,) are, by their index."""
-        row, column = np.divmod(at, self.shape[1])
-        scale = np.searchsorted(self.tops, row, side="right") - 1
-        return Places(at, scale, np.array([column - BORDER, row - self.tops[scale]]).T)
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Places:
-    """N cells: ``at`` (N,): index in the flat image; ``scale`` (N,); ``xy`` (N, 2): in cells."""
-
-    at: NDArray[np.intp]
-    scale: NDArray[np.intp]
-    xy: NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,19 +125,9 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
         covariance,
         surround,
         layout,
-        _together(layout, lights),
-        _together(layout, snr),
+        layout.together(lights),
+        layout.together(snr),
     )
-
-
-def _together(layout: Layout, images: list[NDArray[np.float32]]) -> NDArray[np.float32]:
-    """One image of all scales' (h, w, ...), each with its border."""
-    together = np.zeros(layout.shape + images[0].shape[2:], np.float32)
-    for top, image in zip(layout.tops.tolist(), images, strict=True):
-        height, width = image.shape[:2]
-        place = together[top - BORDER : top + height + BORDER, : width + 2 * BORDER]
-        cv2.copyMakeBorder(image, *(BORDER,) * 4, cv2.BORDER_REPLICATE, place)
-    return together
 
 
 def _halved(image: NDArray[_Number]) -> NDArray[_Number]:

@@ -16,8 +16,9 @@ from chromadock.hue_search import OFFSET_STEP
 from chromadock.look import Found, Look
 from chromadock.method import HUE_RANGE
 from chromadock.robust.chroma import SPREAD
+from chromadock.robust.layout import FINEST_CELL
 from chromadock.robust.method import RobustMethod
-from chromadock.robust.response import FINEST_CELL, respond
+from chromadock.robust.response import respond
 from chromadock.robust.shape import focal_px
 from chromadock.stopwatch import Stopwatch
 

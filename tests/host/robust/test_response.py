@@ -4,15 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
+from chromadock.robust.layout import BORDER, FINEST_CELL
 from chromadock.robust.peaks import MAX_PEAKS, find_peaks
-from chromadock.robust.response import (
-    BORDER,
-    FINEST_CELL,
-    Response,
-    filtered,
-    linear,
-    respond,
-)
+from chromadock.robust.response import Response, filtered, linear, respond
 
 FOCAL_PX = 512.0
 RED = 0  # hue

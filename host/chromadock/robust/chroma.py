@@ -79,8 +79,8 @@ class Colours:
 
         The mean of the ratios with each member for the one that has the dock's.
         """
-        rows, columns = members[:, :, None], members[:, None, :]
-        pairs, beside = self.density[rows, columns], self.near[rows, columns]
+        at = members[:, :, None] * len(self.near) + members[:, None, :]
+        pairs, beside = self.density.take(at), self.near.take(at)
         everywhere = self.everywhere[members] - pairs.sum(axis=1)
         nearby = self.nearby[members] - (pairs * beside).sum(axis=1)
         count = self.count[members] - beside.sum(axis=1)

@@ -60,7 +60,8 @@ class Clutter:
         """(M,) rarity of sets (M, n), whose members are not each other's clutter."""
         stronger = members[:, None, :] < members[:, :, None]
         ranks = members - stronger.sum(axis=2)
-        beside = stronger & self.near[members[:, :, None], members[:, None, :]]
+        pairs = members[:, :, None] * len(self.near) + members[:, None, :]
+        beside = stronger & self.near.take(pairs)
         nearby = self.nearby[members] - beside.sum(axis=2)
         # The strongest of the others comes after those that none of them is stronger than.
         first = (ranks == 0).sum(axis=1)

@@ -159,7 +159,7 @@ def _matched_filter(
 
     North, Proc. IEEE 51 (1963) 1016; in colour space it takes the water's own hue out.
     """
-    whitened = np.linalg.solve(covariance, signature)
+    whitened = np.asarray(cv2.solve(covariance, signature[:, None])[1], np.float64)[:, 0]
     return (whitened / np.sqrt(signature @ whitened)).astype(np.float32)[None]
 
 

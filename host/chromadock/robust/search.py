@@ -170,7 +170,8 @@ class _Looks:
 
     def exactly(self, members: NDArray[np.intp]) -> Real:
         """Rarity and colours of sets (n, M)."""
-        return self.clutter.rarity_of(members.T) + self.colours.log_common(members.T)
+        sets = np.ascontiguousarray(members.T)
+        return self.clutter.rarity_of(sets) + self.colours.log_common(sets)
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ from chromadock.robust.received import received_hue
 from chromadock.robust.refine import Tops, refined
 from chromadock.robust.response import MIN_SIDE, Response, respond
 from chromadock.robust.search import Search
-from chromadock.robust.shape import ShapeModel, focal_px, ideal
+from chromadock.robust.shape import MIN_SPACING_PX, ShapeModel, focal_px, ideal
 from chromadock.robust.twin import is_image_of
 from chromadock.stopwatch import Stopwatch
 
@@ -155,8 +155,7 @@ class _View:
         if len(peaks.snr) < len(self.model.order):
             return []
         if cell not in self._searches:
-            # Cells of markers that touch tell them apart no more.
-            apart_px = 2.0 * cell
+            apart_px = MIN_SPACING_PX * cell / FINEST_CELL  # so that cells do not touch
             self._searches[cell] = Search(self.model, _PEAK_ERROR * cell, self.area, apart_px)
         found = self._searches[cell].find(
             ideal(peaks.xy, self.camera), peaks.snr, peaks.chroma, HOPEFUL

@@ -59,8 +59,8 @@ class Search:
         self._by_marker = np.argsort(model.order)
         self._none = Candidates(np.empty((0, count), np.intp), np.empty(0), np.empty(0))
         # The most that strengths, and places given the base, may add: by the base's span.
-        self._alike = float(log_alike(np.full((1, count), STRONGEST), model.along)[0])
-        self._most = self._alike - np.log(frame_area) + sum(s.log_peak for s in self._steps)
+        alike = log_alike(np.full((1, count), STRONGEST), model.along)
+        self._most = alike - np.log(frame_area) + sum(s.log_peak for s in self._steps)
 
     def find(self, z: Complex, snr: Real, chroma: Real, least: float) -> Candidates:
         """Sets of peaks with an evidence of ``least`` or more.

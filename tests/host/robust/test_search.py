@@ -11,7 +11,14 @@ from chromadock.pose import Sighting, estimates
 from chromadock.robust.acceptance import rigid
 from chromadock.robust.chroma import Colours
 from chromadock.robust.clutter import Clutter
-from chromadock.robust.evidence import SLOPE, SPREAD, STRONGEST, log_alike, placed_along
+from chromadock.robust.evidence import (
+    SLOPE,
+    SPREAD,
+    STRONGEST,
+    log_alike,
+    log_unlike,
+    placed_along,
+)
 from chromadock.robust.method import MAX_TRIALS
 from chromadock.robust.peaks import MIN_SNR
 from chromadock.robust.search import Search
@@ -215,3 +222,17 @@ def test_what_outshines_all_clutter_is_the_rarer_for_it_to_a_limit() -> None:
 
 
 ONE = np.array([[0]])
+
+
+@pytest.mark.parametrize("points", [RECTANGLE, FIVE])
+def test_two_markers_bound_how_alike_a_set_with_them_can_be(points: np.ndarray) -> None:
+    rng = np.random.default_rng(11)
+    along = placed_along(points)
+    snr = MIN_SNR * 10 ** rng.uniform(0, 2, (2000, len(points)))
+    alike = log_alike(snr, along)
+    most = log_alike(np.full((1, len(points)), STRONGEST), along)
+    for a, b in permutations(range(len(points)), 2):
+        bound = most + log_unlike(snr[:, a], snr[:, b], float(along[b] - along[a]))
+        assert (alike <= bound + 1e-9).all()
+        # It is no idle bound: the others can do what they like.
+        assert np.median(bound) < most - 0.5

@@ -45,8 +45,27 @@ def test_a_scene_has_a_ratio_and_one_for_each_stage_which_sum_up_to_it(method: s
     assert min(parts) >= 0 and totals(ratios) == {"water": ratios["water"]}
 
 
-def test_with_the_track_the_mean_is_not_beyond_the_longest() -> None:
-    (mean, longest) = tracked_ratios({"water": plain_water()}, frames=3)["water"]
+def test_with_the_track_the_mean_and_the_longest_are_over_the_blurs(monkeypatch: Any) -> None:
+    """By a clock that the blur moves on by 2 and a frame by 8, but every tenth by 28."""
+    now, turns = [0.0], iter(range(1000))
+
+    def takes(seconds: float) -> None:
+        now[0] += seconds
+
+    class Tracked:
+        def __init__(self, *_: Any) -> None: ...
+
+        def process(self, *_: Any) -> None:
+            takes(28 if next(turns) % 10 == 0 else 8)
+
+    monkeypatch.setattr(bench_ratios.time, "process_time", lambda: now[0])
+    monkeypatch.setattr(bench_ratios.cv2, "GaussianBlur", lambda *_: takes(2))
+    monkeypatch.setattr(bench_ratios, "Detector", Tracked)
+    assert tracked_ratios({"water": plain_water()}, frames=100) == {"water": (5.0, 14.0)}
+
+
+def test_with_the_track_a_real_detector_has_ratios() -> None:
+    mean, longest = tracked_ratios({"water": plain_water()}, frames=3)["water"]
     assert 0 < mean <= longest
 
 

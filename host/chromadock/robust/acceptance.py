@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from chromadock.pose import Estimate
 
-FALSE_ALARM_RATE = 0.003
+FALSE_ALARM_RATE = 1e-4
 """Bound on the share of frames of Poisson clutter in which any set of peaks is taken for the
 dock.  It is Markov's, and so loose by far; but real water is not quite Poisson.  What comes of
 both on photographs is in docs/robust.md."""
@@ -20,9 +21,11 @@ HOPEFUL = LEAST_EVIDENCE - float(np.log(1.5))
 """Evidence worth measuring for.  Exact places may add a factor of three, but to wait for that finds
 no more docks, and measuring is the dearest step."""
 
-# Of true docks one in a thousand has a larger reprojection error, in standard deviations:
-# 3.09 of a normal distribution.
-_REJECTED = 3.09
+PLACE_TOLERANCE = 0.05
+"""Of the range: a pose whose place is farther off is wrong."""
+
+MOST_DOUBT = 0.02
+"""Probability that a pose is wrong, beyond which it is not told."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -30,20 +33,34 @@ class Constellation:
     """Markers that were taken for the dock's.
 
     ``markers`` (k,): which of the dock's; ``xy`` (k, 2) pixels; ``evidence``: natural log
-    of the likelihood ratio; ``poses``: one or two, the better first.
+    of the likelihood ratio; ``poses``: one or two, the better first; ``doubt``: see there.
     """
 
     markers: NDArray[np.intp]
     xy: NDArray[np.float64]
     evidence: float
     poses: tuple[Estimate, ...]
+    doubt: float = 0.0
 
 
-def rigid(pose: Estimate, markers: int) -> bool:
-    """Whether so many places fit a pose as places of a rigid dock do."""
-    freedom = 2 * markers - 6
-    if not freedom:  # three places fit some pose exactly
-        return True
-    # Quantile of chi-square: Wilson and Hilferty, PNAS 17 (1931) 684.
-    spread = 2 / (9 * freedom)
-    return bool(pose.chi_square <= freedom * (1 - spread + _REJECTED * np.sqrt(spread)) ** 3)
+def doubt(poses: tuple[Estimate, ...], weights: NDArray[np.float64]) -> float:
+    """Probability that the dock is not where the first of its poses has it.
+
+    Each pose, by its weight, puts the dock at its own range, known to a normal error; elsewhere
+    than within PLACE_TOLERANCE of the first one's place that is wrong.
+    """
+    told = poses[0].t
+    tolerance = PLACE_TOLERANCE * float(np.linalg.norm(told))
+    wrong = 0.0
+    for pose, weight in zip(poses, weights.tolist(), strict=True):
+        sight = pose.t / np.linalg.norm(pose.t)
+        sigma = math.sqrt(max(float(sight @ pose.covariance[:3, :3] @ sight), 1e-18))
+        off = float(np.linalg.norm(pose.t - told))
+        within = _normal((tolerance - off) / sigma) - _normal((-tolerance - off) / sigma)
+        wrong += weight * (1 - within)
+    return wrong
+
+
+def _normal(z: float) -> float:
+    """Share of a normal distribution below z standard deviations."""
+    return 0.5 * math.erfc(-z / math.sqrt(2))

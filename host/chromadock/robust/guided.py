@@ -94,6 +94,7 @@ def guided(
         off = (peaks.xy[members] - expected[markers]).reshape(len(members), -1)
         evidence = chance + log_norm - 0.5 * (off @ inverse * off).sum(axis=1)
         evidence += log_alike(peaks.snr[members], along[markers])
+        evidence += peaks.likeness[members].sum(axis=1)
         evidence += clutter.rarity_of(members) + colours.log_common(members)
         k = int(evidence.argmax())
         if best is None or evidence[k] > best.evidence:

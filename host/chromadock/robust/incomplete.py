@@ -55,7 +55,7 @@ class Incomplete:
         places = ideal(peaks.xy, self._camera)
         guesses: list[Guess] = []
         for part, search in zip(self._parts, self._searches[cell], strict=True):
-            found = search.find(places, peaks.snr, peaks.chroma, least - rarely - AMBIGUOUS)
+            found = search.find(places, peaks, least - rarely - AMBIGUOUS)
             for members, evidence in zip(found.members, found.evidence.tolist(), strict=True):
                 guesses.append(Guess(part.markers, members, evidence + rarely))
         best = max(guesses, key=lambda guess: guess.evidence, default=None)

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeVar
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-FINEST_CELL = 4
+_Number = TypeVar("_Number", np.uint8, np.float32)
+
+FINE_CELL = 4
 """Pixels: the lens, the halo and JPEG spread a far marker's light about as wide, so that a
 finer grid only adds noise."""
 
+SMALL_FRAME = 400
+"""Rows: a frame with fewer shows far markers closer together, and has finest cells half as wide."""
+
 BORDER = 3
 """Cells about each scale that repeat its outermost."""
+
+
+def finest_cell(width: int, height: int) -> int:
+    """Pixels that the finest cells of frames are wide."""
+    return FINE_CELL // 2 if min(width, height) < SMALL_FRAME else FINE_CELL
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -46,7 +57,7 @@ class Layout:
     @lru_cache(maxsize=4)
     def of(cls, height: int, width: int, coarsest: float) -> Layout:
         """For frames of ``height`` x ``width`` pixels and cells of up to ``coarsest``."""
-        cells = [FINEST_CELL]
+        cells = [finest_cell(width, height)]
         while 2 * cells[-1] <= coarsest:
             cells.append(2 * cells[-1])
         shapes = np.array([(height // cell, width // cell) for cell in cells])
@@ -69,9 +80,9 @@ class Layout:
         scale = np.searchsorted(self.tops, row, side="right") - 1
         return Places(at, scale, np.array([column - BORDER, row - self.tops[scale]]).T)
 
-    def together(self, images: list[NDArray[np.float32]]) -> NDArray[np.float32]:
+    def together(self, images: list[NDArray[_Number]]) -> NDArray[_Number]:
         """One image of all scales' (h, w, ...), each with its border."""
-        together = np.zeros(self.shape + images[0].shape[2:], np.float32)
+        together = np.zeros(self.shape + images[0].shape[2:], images[0].dtype)
         for top, image in zip(self.tops.tolist(), images, strict=True):
             height, width = image.shape[:2]
             place = together[top - BORDER : top + height + BORDER, : width + 2 * BORDER]

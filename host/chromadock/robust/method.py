@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import islice, product
 
@@ -17,22 +17,25 @@ from chromadock.look import Found, Look
 from chromadock.pose import Estimate, Sighting, estimates, same_rotation
 from chromadock.pose import refined as refined_pose
 from chromadock.profile import widened
-from chromadock.robust.acceptance import HOPEFUL, LEAST_EVIDENCE, Constellation, rigid
+from chromadock.robust.acceptance import HOPEFUL, LEAST_EVIDENCE, MOST_DOUBT, Constellation, doubt
 from chromadock.robust.guided import Guess, guided
 from chromadock.robust.incomplete import Incomplete
-from chromadock.robust.layout import FINEST_CELL
 from chromadock.robust.peaks import MIN_SNR, Peaks, find_peaks
+from chromadock.robust.placement import PosePrior, placement
 from chromadock.robust.received import received_hue
 from chromadock.robust.refine import Tops, refined
 from chromadock.robust.response import MIN_SIDE, Response, respond
 from chromadock.robust.search import Search
-from chromadock.robust.shape import MIN_SPACING_PX, ShapeModel, focal_px, ideal
+from chromadock.robust.shape import ATTITUDE_RAD, MIN_SPACING_CELLS, ShapeModel, focal_px, ideal
 from chromadock.robust.twin import is_image_of
 from chromadock.stopwatch import Stopwatch
 
 MAX_TRIALS = 6
 """Candidates of a frame that are measured: bounds the time.  The true one is almost always the
 first; some of the others are the same dock with one marker mistaken, and its image."""
+
+MAX_CHOICES = 3
+"""Places of each of four markers that are tried in every combination; of more markers two."""
 
 MAX_BLOBS = 16
 """Peaks that are reported."""
@@ -99,6 +102,16 @@ class RobustMethod:
             return Found("not_found", passed, blobs)
         names = self._dock.names
         places = zip(best.markers.tolist(), best.xy.tolist(), strict=True)
+        if best.doubt > MOST_DOUBT:
+            return Found(
+                state="uncertain",
+                passed_fraction=passed,
+                blobs=blobs,
+                markers={names[marker]: (x, y) for marker, (x, y) in places},
+                estimates=best.poses,
+                evidence=best.evidence / float(np.log(10)),
+                hue=received_hue(response, best.xy),
+            )
         alternative = best.poses[1].pose() if len(best.poses) > 1 else None
         return Found(
             state="found" if len(best.markers) == len(names) else "partial",
@@ -134,6 +147,8 @@ class _View:
         across = corners[1] - corners[0]
         self.area = float(abs(across.real * across.imag))
         self._points = points
+        nearest = float(np.ptp(points, axis=0).max()) * self.focal_px / max(camera.width, camera.height)
+        self.prior = PosePrior(camera, self.area, self.focal_px, float(np.log(20)), np.eye(3), ATTITUDE_RAD)
         self._searches: dict[int, Search] = {}
 
     @cached_property
@@ -155,25 +170,24 @@ class _View:
         if len(peaks.snr) < len(self.model.order):
             return []
         if cell not in self._searches:
-            apart_px = MIN_SPACING_PX * cell / FINEST_CELL  # so that cells do not touch
+            apart_px = MIN_SPACING_CELLS * cell  # so that cells do not touch
             self._searches[cell] = Search(self.model, _PEAK_ERROR * cell, self.area, apart_px)
-        found = self._searches[cell].find(
-            ideal(peaks.xy, self.camera), peaks.snr, peaks.chroma, HOPEFUL
-        )
+        found = self._searches[cell].find(ideal(peaks.xy, self.camera), peaks, HOPEFUL)
         best = zip(found.members, found.looks.tolist(), found.evidence.tolist(), strict=True)
         return [
             _Candidate(cell, peaks.xy[members], peaks.noise[members], looks, evidence)
             for members, looks, evidence in islice(best, MAX_TRIALS)
         ]
 
-    def evidence(
-        self, looks: float, xy: NDArray[np.float64], sigma: NDArray[np.float64]
+
+    def log_shape(
+        self, xy: NDArray[np.float64], sigma: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """(N,) evidence for exact places (N, n, 2) and their errors (N, n)."""
+        """(N,) log density of places (N, n, 2), known to (N, n), as shapes of the dock."""
         order = list(self.model.order)
         z = ideal(xy.reshape(-1, 2), self.camera).reshape(sigma.shape)[:, order]
-        place = self.model.log_base(z[:, 1] - z[:, 0]) + self.model.log_shape(z, sigma[:, order])
-        return np.asarray(place - np.log(self.area) + looks)
+        base = self.model.log_base(z[:, 1] - z[:, 0])
+        return np.asarray(base + self.model.log_shape(z, sigma[:, order]))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -236,13 +250,27 @@ class _Measured:
         if tops is None:
             return None
         xy, sigma = _choices(tops)
-        evidence = self.view.evidence(candidate.looks, xy, sigma)
-        best = int(evidence.argmax())
+        best = int(self.view.log_shape(xy, sigma).argmax()) if len(xy) > 1 else 0
         # So many places to choose from are so many chances for clutter.
-        sure = float(evidence[best] - np.log(len(evidence)))
-        if sure < LEAST_EVIDENCE:
+        sighting = Sighting(self.points, xy[best], sigma[best], self.view.camera)
+        poses = estimates(sighting)
+        if not poses:
             return None
-        return self._posed(np.arange(len(self.points)), xy[best], sigma[best], sure, ())
+        placed = placement(sighting, poses, self.view.prior)
+        evidence = placed.log_density + candidate.looks - np.log(len(xy))
+        if evidence < LEAST_EVIDENCE:
+            return None
+        sighting = Sighting(self.points, xy[best], placed.sigma_px, self.view.camera)
+        again = [refined_pose(sighting, pose.R, pose.t) or pose for pose in poses]
+        order = np.argsort(-placed.weights)
+        wide = tuple(widened(sighting, again[k]) for k in order)
+        return Constellation(
+            np.arange(len(self.points)),
+            xy[best],
+            float(evidence),
+            wide,
+            doubt(wide, placed.weights[order]),
+        )
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
@@ -268,20 +296,32 @@ class _Measured:
         """With all the poses that are left open; None where none is a rigid dock's."""
         sighting = Sighting(self.points[markers], xy, sigma, self.view.camera)
         poses = _poses(sighting, priors) if priors else estimates(sighting)
-        if not poses or not rigid(poses[0], len(markers)):
+        if not poses:
             return None
+        placed = placement(sighting, poses, self.view.prior)
+        sighting = replace(sighting, sigma_px=placed.sigma_px)
         wide = tuple(widened(sighting, pose) for pose in poses)
         return Constellation(markers, xy, evidence, wide)
 
     def _refined(
         self, xy: NDArray[np.float64], cell: int, noise: NDArray[np.float64]
     ) -> list[Tops] | None:
-        return refined(self.frame_bgr, xy, cell, self.response.weights, noise)
+        layout = self.response.layout
+        scale = layout.cells.index(cell)
+        height, width = layout.shapes[scale]
+        column, row = np.clip(((xy + 0.5) / cell).astype(int), 0, [width - 1, height - 1]).T
+        best = self.response.best.ravel()[layout.at(scale, row, column)]
+        best = np.bincount(best).argmax()
+        return refined(
+            self.frame_bgr, xy, cell, self.response.weights[[best] * len(xy)], noise
+        )
 
 
 def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """All ways to choose a place for each marker: (N, n, 2) places and their (N, n) errors."""
-    xy, sigma = product(*(top.xy for top in tops)), product(*(top.sigma for top in tops))
+    each = MAX_CHOICES if len(tops) <= 4 else 2
+    xy = product(*(top.xy[:each] for top in tops))
+    sigma = product(*(top.sigma[:each] for top in tops))
     return np.array(list(xy)), np.array(list(sigma))
 
 
@@ -310,12 +350,13 @@ def _standing_out(response: Response) -> NDArray[np.bool_]:
 
 def _blobs(best: Constellation | None, peaks: dict[int, Peaks]) -> tuple[Blob, ...]:
     """The dock's markers, then the strongest peaks of the finest scale."""
-    radius = FINEST_CELL / 2
-    others = peaks[FINEST_CELL].xy
+    finest = min(peaks)
+    radius = finest / 2
+    others = peaks[finest].xy
     mine: list[Blob] = []
     if best is not None:
         mine = [Blob(x, y, radius, True) for x, y in best.xy.tolist()]
         apart = np.linalg.norm(others[:, None] - best.xy, axis=2).min(axis=1)
-        others = others[apart > 2 * FINEST_CELL]
+        others = others[apart > 2 * finest]
     rest = others[: MAX_BLOBS - len(mine)].tolist()
     return tuple(mine + [Blob(x, y, radius, False) for x, y in rest])

@@ -9,32 +9,31 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.layout import BORDER, FINEST_CELL, Layout
+from chromadock.robust.layout import BORDER, Layout
+from chromadock.robust.likeness import Looks, log_likeness
 from chromadock.robust.response import Response
 
 MIN_SNR = 3.0
 """At the finest scale.  Below it noise alone has so many peaks that no constellation could
 stand out.  As much more at a coarser scale as its cells are wider: what fills them is near."""
 
-MAX_PEAKS = 56
-"""The strongest are kept, so that any frame takes bounded time.  Where glitter has more, a dock
-is seldom told from it: a third more peaks would find one dock in 400 more at 4 m."""
+MAX_PEAKS = 112
+"""The strongest of each scale are kept, so that any frame takes bounded time."""
+
+MAX_PROMISING = 56
+"""Of these so many are searched for markers."""
 
 # A lamp between four cells has half its signal to noise in each; noise would seldom add more.
 _CELL_SHARE = 0.7
 # Looked at closely, of all that stand out.
 _MAX_SUMMITS = 3 * MAX_PEAKS
-# Four times determinant over squared trace of the Hessian: 1 for a round top, 0 on a ridge.
-# Markers that touch half a neighbour stay above a third; struts and edges do not.
-_MIN_ROUNDNESS = 0.35
-# A pole goes on to both sides of its peaks: the weaker side over the peak.  Neighbouring
-# markers stand on one side only; of true markers at 4 m one in a hundred has more.
-_MAX_RIDGE = 0.7
-# A lamp takes light away from no channel of what is behind it.  That is taken to be as dark as
-# the second darkest of eight places about: a buoy beside it may be brighter, and one place may
-# be a dark edge.  A lamp's dark holder takes some; but painted parts of a dock, which form
-# constellations of their own where this is let pass, take more.  Standard deviations of noise.
-_MOST_MISSING = 3.0
+# Clutter grows rarer with about this power of its strength.
+_WORTH = 2.0
+# Natural log: less is kept by no lamp that matters.
+_LEAST_LIKENESS = -5.0
+# Cells within which a peak may belong to a higher one, and where the way there is looked at.
+_NEARBY = 12
+_STEPS = np.arange(1, 8)[:, None] / 8
 
 # Rings that tell ridges, in cells; eight directions, those opposite four apart.
 _DOWN = np.array([0, 1, 1, 1, 0, -1, -1, -1])[:, None]
@@ -57,9 +56,11 @@ class Peaks:
     snr: NDArray[np.float64]
     noise: NDArray[np.float64]
     chroma: NDArray[np.float64]
+    likeness: NDArray[np.float64]
+    best: NDArray[np.uint8]
+    promising: NDArray[np.intp]
 
 
-_NONE = Peaks(np.empty((0, 2)), np.empty(0), np.empty(0), np.empty((0, 2)))
 
 
 def find_peaks(response: Response) -> dict[int, Peaks]:
@@ -74,26 +75,82 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
     order = bright[np.argsort(-strength[bright], kind="stable")[:_MAX_SUMMITS]]
     at, near, centre = at[order], near[:, order], centre[order]
 
-    shift, roundness = _paraboloid(centre, near)
-    sides = values[at + _ring(stride, _RADII)]
-    ridge = np.minimum(sides[:, :4], sides[:, 4:]).max(axis=(0, 1)) / centre
-    per_channel = np.sqrt(np.diag(response.covariance))
-    lamp = (gained(response, at) > -_MOST_MISSING * per_channel).all(axis=1)
-    true = np.flatnonzero((roundness > _MIN_ROUNDNESS) & (ridge < _MAX_RIDGE) & lamp)
-    if not len(true):
-        return dict.fromkeys(layout.cells, _NONE)
-    places = layout.places(at[true])
+    shift, flatness = _paraboloid(centre, near)
+    places = layout.places(at)
+    looks = _looks(response, at, centre, flatness, places.scale)
+    likeness = log_likeness(looks, strength[order], places.scale)
     cell = np.array(layout.cells)[places.scale]
-    added = response.added(places)
-    noise = response.excess(added) / centre[true]
-    xy = (places.xy + shift[:, true].T + 0.5) * cell[:, None] - 0.5
-    chroma = response.chroma(added)
-    strongest = strength[order[true]].astype(np.float64)
+    noise = np.maximum(response.excess(at), 1e-6) / centre
+    xy = (places.xy + shift.T + 0.5) * cell[:, None] - 0.5
+    chroma = response.chroma(response.added_at(at))
+    strongest = strength[order].astype(np.float64)
     found = {}
     for k, width in enumerate(layout.cells):
         these = np.flatnonzero(places.scale == k)[:MAX_PEAKS]
-        found[width] = Peaks(xy[these], strongest[these], noise[these], chroma[these])
+        found[width] = Peaks(
+            xy[these],
+            strongest[these],
+            noise[these],
+            chroma[these],
+            likeness[these],
+            response.best.ravel()[at[these]],
+            _promising(strongest[these], likeness[these]),
+        )
     return found
+
+
+def _promising(snr: NDArray[np.float64], likeness: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Which peaks are searched for markers: likelier lamps than clutter as strong is common."""
+    score = likeness + _WORTH * np.log(snr)
+    score[likeness < _LEAST_LIKENESS] = -np.inf
+    best = np.argsort(-score, kind="stable")[:MAX_PROMISING]
+    return np.sort(best[np.isfinite(score[best])])
+
+
+def _looks(
+    response: Response,
+    at: NDArray[np.intp],
+    centre: NDArray[np.float32],
+    flatness: NDArray[np.float32],
+    scale: NDArray[np.intp],
+) -> Looks:
+    """What is seen about N peaks, the strongest first."""
+    values, stride = response.snr.ravel(), response.layout.shape[1]
+    sides = values[at + _ring(stride, _RADII)] / centre
+    ridge = np.minimum(sides[:, :4], sides[:, 4:]).max(axis=(0, 1))
+    light = response.light.reshape(-1, 3)
+    around = np.sort(light.take(at + _ring(stride, BORDER), axis=0), axis=0)
+    deviation = np.sqrt(np.diag(response.covariance)).astype(np.float32)
+    missing = np.maximum((around[1] - light[at]) / deviation, 0).max(axis=1)
+    adds = np.maximum((light[at] - around[6]) / deviation, 0).max(axis=1)
+    return Looks(
+        flatness,
+        ridge,
+        sides[1].mean(axis=0),
+        np.sort(sides[1], axis=0)[-2],
+        _saddles(values, at, centre, stride, scale),
+        missing / (adds + missing + 1),
+    )
+
+
+def _saddles(
+    values: NDArray[np.float32],
+    at: NDArray[np.intp],
+    centre: NDArray[np.float32],
+    stride: int,
+    scale: NDArray[np.intp],
+) -> NDArray[np.float64]:
+    """(N,) the least on the straight way to a higher peak nearby over each peak's own height; of
+    several the largest, 0 where there is none."""
+    y, x = np.divmod(at, stride)
+    apart = np.hypot(y[:, None] - y, x[:, None] - x)
+    higher = (centre > centre[:, None]) & (scale == scale[:, None])
+    own, other = np.nonzero((apart < _NEARBY) & higher)
+    down = np.rint(y[own] + (y[other] - y[own]) * _STEPS).astype(np.intp)
+    across = np.rint(x[own] + (x[other] - x[own]) * _STEPS).astype(np.intp)
+    saddles = np.zeros(len(at))
+    np.maximum.at(saddles, own, values[down * stride + across].min(axis=0) / centre[own])
+    return saddles
 
 
 @lru_cache(maxsize=4)
@@ -106,9 +163,9 @@ def _thresholds(layout: Layout) -> tuple[NDArray[np.float32], NDArray[np.float32
     worth = np.full(layout.shape, np.inf, np.float32)
     for scale, cell in enumerate(layout.cells):
         rows, columns = layout.inside(scale)
-        least[rows] = MIN_SNR * cell / FINEST_CELL
+        least[rows] = MIN_SNR * cell / layout.cells[0]
         inner = slice(rows.start + 1, rows.stop - 1), slice(columns.start + 1, columns.stop - 1)
-        worth[inner] = _CELL_SHARE * MIN_SNR * cell / FINEST_CELL
+        worth[inner] = _CELL_SHARE * MIN_SNR * cell / layout.cells[0]
     return least, worth
 
 
@@ -143,12 +200,12 @@ def _brightest(centre: NDArray[np.float32], near: NDArray[np.float32]) -> NDArra
 def _paraboloid(
     centre: NDArray[np.float32], near: NDArray[np.float32]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Of the top through 3 x 3 values: x, y (2, N) within half a cell, and roundness (N,).
+    """Of the top through 3 x 3 values: x, y (2, N) within half a cell, and flatness (N,).
 
     ``near`` (8, N) are the ring of radius 1.
     """
     ahead, behind = near[:4:2], near[4::2]  # right and down, left and up
     xx, yy = bend = 2 * centre - ahead - behind
     xy = (near[3] + near[7] - near[1] - near[5]) / 4
-    roundness = 4 * (xx * yy - xy * xy) / np.maximum((xx + yy) ** 2, 1e-12)
-    return np.clip((ahead - behind) / np.maximum(2 * bend, 1e-6), -0.5, 0.5), roundness
+    flatness = 1 - 4 * (xx * yy - xy * xy) / np.maximum((xx + yy) ** 2, 1e-12)
+    return np.clip((ahead - behind) / np.maximum(2 * bend, 1e-6), -0.5, 0.5), flatness

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from chromadock import method
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.robust.layout import FINEST_CELL
 from chromadock.robust.peaks import gained
 from chromadock.robust.response import Response, linear
 
@@ -31,7 +30,7 @@ def received_hue(response: Response, xy: NDArray[np.float64]) -> int:
     the camera's crosstalk turn the hue by some tens of degrees; see docs/robust.md.
     """
     height, width = response.layout.shapes[0]
-    across, down = np.floor((xy + 0.5) / FINEST_CELL).astype(np.intp).T
+    across, down = np.floor((xy + 0.5) / response.layout.cells[0]).astype(np.intp).T
     column = np.clip(across[:, None] + _NEAR[0], 0, width - 1)
     row = np.clip(down[:, None] + _NEAR[1], 0, height - 1)
     at = response.layout.at(0, row, column).ravel()

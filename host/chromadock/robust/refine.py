@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.layout import FINEST_CELL
+from chromadock.robust.layout import FINE_CELL
 from chromadock.robust.response import filtered, linear
 
 WIDTHS = tuple(1.4 * 2 ** (k / 2) for k in range(7))
@@ -99,17 +99,17 @@ def refined(
     frame_bgr : (H, W, 3) uint8.
     xy : (n, 2) pixels, about where they are.
     cell : pixels, of the scale they were found at.
-    weights : (1, 3), the response's filter.
+    weights : (n, 3), of the response's filters that which answers most at each.
     noise : (n,) standard deviation of the filtered light of cells about each.
 
     Returns
     -------
     n of them; None where one has no top, or none that says more than where it was supposed.
     """
-    step = cell // FINEST_CELL
+    step = max(cell // FINE_CELL, 1)
     patches: dict[int, _Patch] = {}
     for lamps, spacing in _by_spacing(xy):
-        cut = _patches(frame_bgr, xy[lamps], step, weights, spacing / step)
+        cut = _patches(frame_bgr, xy[lamps], step, weights[lamps], spacing / step)
         patches.update(zip(lamps, cut, strict=True))
     found = []
     for lamp, spread in enumerate(noise.tolist()):
@@ -118,7 +118,7 @@ def refined(
         if not tops:
             return None
         # A cell is so many steps wide, and independent noise averages out by as much.
-        per_noise = INFLATION * FINEST_CELL * spread
+        per_noise = INFLATION * cell / step * spread
         places = _in_pixels(tops, patch.corner, step, per_noise)
         if places.sigma[0] > MAX_SHIFT * step:
             return None
@@ -194,7 +194,7 @@ def _patches(
     side = 2 * around + 1
     corners = np.rint(xy).astype(np.intp) - side * step // 2
     cuts = [_cut(frame_bgr, left, top, side * step) for left, top in corners.tolist()]
-    light = _shining(np.concatenate(cuts), weights)
+    light = np.concatenate([_shining(cut, w[None]) for cut, w in zip(cuts, weights, strict=True)])
     if step > 1:
         size = (side, side * len(xy))
         light = np.asarray(cv2.resize(light, size, interpolation=cv2.INTER_AREA), np.float32)

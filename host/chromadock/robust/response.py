@@ -1,4 +1,4 @@
-"""How much a place shines in the markers' colour, in units of the frame's own noise."""
+"""How much a place shines like a lamp, in units of the frame's own noise."""
 
 from __future__ import annotations
 
@@ -10,19 +10,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.robust.layout import Layout, Places
+from chromadock.method import HUE_RANGE
+from chromadock.robust.layout import Layout
 
 GAMMA = 2.2
 """Of cameras whose pictures are meant for screens (sRGB is within 1% of it)."""
 
-COARSEST_CELL_RAD = 1 / 64
+COARSEST_CELL_RAD = 1 / 24
 """As wide as a marker's glare looks from where the dock just fits into the picture."""
 
 SURROUND_CELL = 32
-"""Pixels: water changes little over it, and no marker fills it."""
+"""Pixels, at least: water changes little over it, and no far marker fills it."""
+
+SURROUND_CELLS = 4
+"""Cells of a scale that its surround is wide, at least: a lamp that fills a cell does not fill
+the surround."""
 
 MIN_SIDE = 64
 """Pixels: two surrounds."""
+
+HUES = 6
+"""Hues that are looked for at once, evenly about the circle from the expected one: every lamp is
+within 30 degrees of one of them, and a matched filter loses little by that."""
+
+UNEXPECTED = 0.4
+"""Signal to noise that a hue other than the expected one counts less, since the largest of several
+normal variables exceeds one of them by about so much."""
+
+CLIPPED_LIGHT = 0.8
+"""Linear light of a cell, of full scale, from which on its channel may have been clipped."""
 
 _Number = TypeVar("_Number", np.uint8, np.float32)
 
@@ -47,44 +63,44 @@ _NORMAL = float(np.sqrt(np.pi / 2))
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """What the matched filter makes of a frame.
+    """What the matched filters make of a frame.
 
-    ``weights`` (1, 3) float32, BGR: the filter, such that finest cells fluctuate by about 1;
-    ``across`` (2, 3), BGR: filters blind to the markers' colour, that fluctuate as much, each
-    for itself; ``covariance`` (3, 3), BGR: of the fluctuation of cells, in linear light;
-    ``surround`` (h, w, 3) float32: linear light in cells of SURROUND_CELL.
+    ``weights`` (HUES, 3) float32, BGR: the filters, that of the expected hue first, such that
+    finest cells fluctuate by about 1; ``across`` (2, 3), BGR: filters blind to the expected
+    colour, that fluctuate as much, each for itself; ``covariance`` (3, 3), BGR: of the
+    fluctuation of cells, in linear light.
 
     In images of all scales, see ``layout``: ``light`` (H, W, 3) float32: linear BGR, 0..1;
-    ``snr`` (H, W) float32: the filtered light less that of the surround, in standard deviations
-    of its local fluctuation.
+    ``added`` (H, W, 3) float32: the same less that of the surround; ``snr`` (H, W) float32: the
+    largest of the filters' outputs, in standard deviations of its local fluctuation;
+    ``best`` (H, W) uint8: of which filter.
     """
 
     weights: NDArray[np.float32]
     across: NDArray[np.float64]
     covariance: NDArray[np.float64]
-    surround: NDArray[np.float32]
     layout: Layout
     light: NDArray[np.float32]
+    added: NDArray[np.float32]
     snr: NDArray[np.float32]
+    best: NDArray[np.uint8]
 
-    def added(self, places: Places) -> NDArray[np.float64]:
-        """(N, 3) linear BGR: the light of cells beyond that of the surround."""
-        larger = np.array(self.surround.shape[1::-1]) / self.layout.shapes[:, ::-1]
-        xy = ((places.xy + 0.5) * larger[places.scale] - 0.5).astype(np.float32)
-        # Maps of two dimensions: OpenCV 5 makes other images of one than OpenCV 4 does.
-        x, y, border = xy[:, :1], xy[:, 1:], cv2.BORDER_REPLICATE
-        behind = cv2.remap(self.surround, x, y, cv2.INTER_LINEAR, borderMode=border)
-        return np.asarray(self.light.reshape(-1, 3)[places.at] - behind[:, 0], np.float64)
+    def added_at(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
+        """(N, 3) linear BGR: the light of cells beyond that of the surround, by their index."""
+        return self.added.reshape(-1, 3)[at].astype(np.float64)
 
-    def excess(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(N,) light (N, 3) through the filter."""
-        return np.asarray(added @ self.weights[0])
+    def excess(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
+        """(N,) light that cells add, through the filter that answers most there."""
+        weights = self.weights[self.best.ravel()[at]]
+        clipped = self.light.reshape(-1, 3)[at].max(axis=1) >= CLIPPED_LIGHT
+        weights = np.where(clipped[:, None], np.maximum(weights, 0), weights)
+        return np.asarray((self.added_at(at) * weights).sum(axis=1))
 
     def chroma(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
         """(N, 2) radians: how far light (N, 3) is from the markers' colour."""
         off = added @ self.across.T
         size = np.hypot(off[:, 0], off[:, 1])
-        angle = np.arctan2(size, self.excess(added))
+        angle = np.arctan2(size, added @ self.weights[0])
         return np.asarray(off * (angle / np.maximum(size, 1e-9))[:, None])
 
 
@@ -99,7 +115,7 @@ def filtered(light: NDArray[np.float32], weights: NDArray[np.float32]) -> NDArra
 
 
 def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response:
-    """Filter a frame for lamps of ``hue`` 0..1535.
+    """Filter a frame for lamps, of ``hue`` 0..1535 before all others.
 
     Parameters
     ----------
@@ -107,26 +123,30 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
     focal_px : focal length; sets the coarsest cells.
     """
     height, width = frame_bgr.shape[:2]
-    layout = Layout.of(height, width, min(focal_px * COARSEST_CELL_RAD, SURROUND_CELL / 2))
-    lights = [linear(_halved(_halved(frame_bgr)))]
+    coarsest = min(focal_px * COARSEST_CELL_RAD, min(height, width) / 16)
+    layout = Layout.of(height, width, coarsest)
+    finest = _halved(frame_bgr)
+    if layout.cells[0] > 2:
+        finest = _halved(finest)
+    lights = [linear(finest)]
     covariance = _fluctuation(lights[0])
-    signature = _LINEAR[list(rgb_from_hsv(hue, 255, 255))[::-1]].astype(np.float64)
-    weights = _matched_filter(covariance, signature)
+    hues = [(hue + HUE_RANGE * k // HUES) % HUE_RANGE for k in range(HUES)]
+    signatures = np.array([_LINEAR[list(rgb_from_hsv(h, 255, 255))[::-1]] for h in hues])
+    weights = _matched_filters(covariance, signatures.astype(np.float64))
     while len(lights) < len(layout.cells):
         lights.append(_halved(lights[-1]))
-    surround = lights[-1]
-    for _ in range((SURROUND_CELL // layout.cells[-1]).bit_length() - 1):
-        surround = _halved(surround)
-    behind = filtered(surround, weights)
-    snr = [_against(filtered(light, weights), behind) for light in lights]
+    added = [light - _surround(light, cell) for light, cell in zip(lights, layout.cells, strict=True)]
+    answers = [_answers(light, more, weights) for light, more in zip(lights, added, strict=True)]
+    best = [np.asarray(a.argmax(axis=0), np.uint8) for a in answers]
     return Response(
         weights,
-        _across(covariance, signature),
+        _across(covariance, signatures[0].astype(np.float64)),
         covariance,
-        surround,
         layout,
         layout.together(lights),
-        layout.together(snr),
+        layout.together(added),
+        layout.together([np.asarray(a.max(axis=0)) for a in answers]),
+        layout.together(best),
     )
 
 
@@ -134,6 +154,15 @@ def _halved(image: NDArray[_Number]) -> NDArray[_Number]:
     """Means of 2 x 2 pixels; an odd row or column is spread over the others."""
     size = (image.shape[1] // 2, image.shape[0] // 2)
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), image.dtype)
+
+
+def _surround(light: NDArray[np.float32], cell: int) -> NDArray[np.float32]:
+    """Light (h, w, 3) of the water about each cell."""
+    wide = max(SURROUND_CELL // cell, SURROUND_CELLS)
+    height, width = light.shape[:2]
+    size = (max(1, width // wide), max(1, height // wide))
+    coarse = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
+    return np.asarray(cv2.resize(coarse, (width, height)), np.float32)
 
 
 def _fluctuation(light: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -152,15 +181,16 @@ def _fluctuation(light: NDArray[np.float32]) -> NDArray[np.float64]:
     return np.asarray(variances + _QUANTUM * np.eye(3))
 
 
-def _matched_filter(
-    covariance: NDArray[np.float64], signature: NDArray[np.float64]
+def _matched_filters(
+    covariance: NDArray[np.float64], signatures: NDArray[np.float64]
 ) -> NDArray[np.float32]:
-    """Weights S^-1 s / sqrt(s' S^-1 s): most signal of colour s in noise of covariance S.
+    """Weights S^-1 s / sqrt(s' S^-1 s): most signal of each colour s in noise of covariance S.
 
     North, Proc. IEEE 51 (1963) 1016; in colour space it takes the water's own hue out.
     """
-    whitened = np.asarray(cv2.solve(covariance, signature[:, None])[1], np.float64)[:, 0]
-    return (whitened / np.sqrt(signature @ whitened)).astype(np.float32)[None]
+    whitened = np.linalg.solve(covariance, signatures.T).T
+    scale = np.sqrt((signatures * whitened).sum(axis=1, keepdims=True))
+    return np.asarray(whitened / scale, np.float32)
 
 
 def _across(covariance: NDArray[np.float64], signature: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -177,10 +207,30 @@ def _across(covariance: NDArray[np.float64], signature: NDArray[np.float64]) -> 
     return np.asarray(both / np.sqrt(variances)[:, None])
 
 
-def _against(centre: NDArray[np.float32], surround: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Centre less surround over its local fluctuation."""
-    height, width = centre.shape
-    excess = centre - np.asarray(cv2.resize(surround, (width, height)), np.float32)
+def _answers(
+    light: NDArray[np.float32], added: NDArray[np.float32], weights: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """(HUES, h, w): what cells add, filtered, over its local fluctuation.
+
+    A clipped channel says only that there is as much or more.  Where one is, the others take
+    nothing away: or a lamp's core, which clips in more of them than its halo, would be a hole
+    in it.
+    """
+    height, width = light.shape[:2]
+    planes = np.ascontiguousarray(added.reshape(-1, 3).T)
+    answers = weights @ planes
+    clipped = np.flatnonzero(light.reshape(-1, 3).max(axis=1) >= CLIPPED_LIGHT)
+    if len(clipped):
+        answers[:, clipped] = np.maximum(weights, 0) @ planes[:, clipped]
+    answers = answers.reshape(-1, height, width)
+    for k, answer in enumerate(answers):
+        answers[k] = _against_noise(answer) - (UNEXPECTED if k else 0)
+    return np.asarray(answers, np.float32)
+
+
+def _against_noise(excess: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Filtered light (h, w) over its local fluctuation."""
+    height, width = excess.shape
     blocks = (max(1, width // _BLOCK), max(1, height // _BLOCK))
     noise = cv2.resize(np.abs(excess), blocks, interpolation=cv2.INTER_AREA)
     middle = noise.size // 2

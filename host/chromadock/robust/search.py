@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 from chromadock.robust.chroma import Colours
 from chromadock.robust.clutter import Clutter
 from chromadock.robust.evidence import STRONGEST, log_alike, log_unlike
-from chromadock.robust.shape import Complex, Real, ShapeModel
+from chromadock.robust.peaks import Peaks
+from chromadock.robust.shape import FACETS, Complex, Real, ShapeModel
 
 MAX_SETS = 128
 """Sets that are followed at once: bounds the time; few frames have as many."""
 
 # Chi-square with two degrees of freedom that true markers exceed in 0.3%.
-_NEAR = 11.8
+_NEAR = 18.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ class Search:
         self._slack = 2 * sigma_px
         self._area = frame_area
         bounds = np.concatenate([[model.base.shortest], model.edges, [model.base.longest]])
-        middles = np.sqrt(bounds[:-1] * bounds[1:])
+        middles = np.sqrt(bounds[:-1] * bounds[1:]).repeat(FACETS)
         # The errors of the base's ends add half of the marker's own.
         noise = 1.5 * (sigma_px / middles) ** 2
         self._steps = [_Step.of(model, k, noise) for k in range(len(model.order) - 2)]
@@ -61,22 +62,24 @@ class Search:
         # The most that strengths, and places given the base, may add: by the base's span.
         alike = log_alike(np.full((1, count), STRONGEST), model.along)
         self._most = alike - np.log(frame_area) + sum(s.log_peak for s in self._steps)
+        self._most = self._most + model.log_share
 
-    def find(self, z: Complex, snr: Real, chroma: Real, least: float) -> Candidates:
+    def find(self, z: Complex, peaks: Peaks, least: float) -> Candidates:
         """Sets of peaks with an evidence of ``least`` or more.
 
         Parameters
         ----------
-        z : (N,) ideal pixels, the strongest first.
-        snr : (N,) signal to noise.
-        chroma : (N, 2) radians, see ``Response.chroma``.
+        z : (N,) ideal pixels of the peaks.
+        peaks : of which the markers are looked for among the ``promising``; all are clutter.
         """
-        apart = z - z[:, None]
-        distances = np.abs(apart)
-        triples = self._triples(apart, distances, snr)
+        promising = peaks.promising
+        if len(promising) < len(self._model.order):
+            return self._none
+        apart = z[promising] - z[:, None]
+        triples = self._triples(apart[promising], promising, peaks.snr)
         if not len(triples.hope):
             return self._none
-        looks = _Looks.of(self._model, snr, chroma, Clutter.of(distances, snr, self._area))
+        looks = _Looks.of(self._model, peaks, Clutter.of(np.abs(z - z[:, None]), peaks.snr, self._area))
         sets = triples.hopeful(looks, least)
         for step in self._steps[1:]:
             if not len(sets.hope):
@@ -85,24 +88,30 @@ class Search:
             reach = np.abs(sets.ends) * step.reach[sets.span]
             off = apart[sets.members[0]] - (sets.ends * b)[:, None]
             parent, peak = np.nonzero(np.abs(off) < reach[:, None])
-            sets = sets.extended(step, b, apart, parent, peak).hopeful(looks, least)
+            sets = sets.extended(step, b, z, parent, promising[peak]).hopeful(looks, least)
         return self._weighed(sets, looks, least)
 
-    def _triples(self, apart: Complex, distances: Real, snr: Real) -> _Sets:
-        """Peaks that may be p, q and the third by where they are."""
+    def _triples(self, apart: Complex, promising: NDArray[np.intp], snr: Real) -> _Sets:
+        """Peaks that may be p, q and the third by where they are, ``apart`` (P, P)."""
         model, step = self._model, self._steps[0]
-        first, second = np.nonzero(model.base.holds(apart, distances, self._slack))
+        distances = np.abs(apart)
+        first, second = np.nonzero(
+            model.base.holds(apart, distances, self._slack) & (distances > 0)
+        )
         p, third = np.nonzero(self._side.holds(apart, distances, self._slack))
         base, side = _sharing(first, p)
         ends, size = apart[first, second], distances[first, second]
-        span = np.searchsorted(model.edges, size)
+        # Each is looked at as a view from each side.
+        span = np.searchsorted(model.edges, size)[base] * FACETS
+        span = (span + np.arange(FACETS)[:, None]).ravel()
+        base, side = np.tile(base, FACETS), np.tile(side, FACETS)
         b = apart[p, third][side] / ends[base]
-        below, near = step.judge(b - step.mean[span[base]], span[base])
+        below, near = step.judge(b - step.mean[span], span)
         kept = np.flatnonzero(near & (second[base] != third[side]))
-        base, side, below = base[kept], side[kept], below[kept]
-        span, log_size = span[base], np.log(size[base])
-        place = model.log_base(ends[base]) - below
-        members = np.array([first[base], second[base], third[side]])
+        base, side, below, span = base[kept], side[kept], below[kept], span[kept]
+        log_size = np.log(size[base])
+        place = model.log_base(ends[base]) + model.log_share[span] - below
+        members = promising[[first[base], second[base], third[side]]]
         along = float(model.along[2] - model.along[0])
         unlike = log_unlike(snr[members[0]], snr[members[2]], along)
         return _Sets(
@@ -111,7 +120,7 @@ class Search:
             span=span,
             shape=b[None, kept],
             place=place + step.log_peak[span] - 2 * log_size,
-            hope=place + unlike + self._most[span] - 2 * len(self._steps) * log_size,
+            hope=place - model.log_share[span] + unlike + self._most[span] - 2 * len(self._steps) * log_size,
         )
 
     def _weighed(self, sets: _Sets, looks: _Looks, least: float) -> Candidates:
@@ -126,6 +135,8 @@ class Search:
         said = likely[kept] + looks.alike(members)
         evidence = sets.place[kept] - np.log(self._area) + said
         best = _best(evidence, int((evidence >= least).sum()))
+        # The same peaks may be a view from more than one side.
+        best = best[np.sort(np.unique(members[:, best], axis=1, return_index=True)[1])]
         return Candidates(members[self._by_marker][:, best].T, evidence[best], said[best])
 
 
@@ -133,7 +144,7 @@ class Search:
 class _Looks:
     """What the strengths and colours of N peaks say.
 
-    At most, ``rarity`` (N,): see ``Clutter.rarity``; ``same`` (N, N): see ``Colours.most``, and
+    At most, ``rarity`` (N,): see ``Clutter.most``; ``same`` (N, N): see ``Colours.most``, and
     ``nearest`` (N,): of the colour nearest to each one's.
     """
 
@@ -141,17 +152,20 @@ class _Looks:
     along: Real
     clutter: Clutter
     colours: Colours
+    likeness: Real
     rarity: Real
     same: Real
     nearest: Real
 
     @classmethod
-    def of(cls, model: ShapeModel, snr: Real, chroma: Real, clutter: Clutter) -> _Looks:
-        colours = Colours.of(chroma, snr, clutter.near)
+    def of(cls, model: ShapeModel, peaks: Peaks, clutter: Clutter) -> _Looks:
+        snr, likeness = peaks.snr, peaks.likeness
+        colours = Colours.of(peaks.chroma, snr, clutter.near)
         aside = len(model.order) - 1
         same = colours.most(aside)
         nearest = same.max(axis=1, initial=0.0)
-        return cls(snr, model.along, clutter, colours, clutter.rarity(aside), same, nearest)
+        most = clutter.most(aside) + likeness
+        return cls(snr, model.along, clutter, colours, likeness, most, same, nearest)
 
     def at_most(self, members: NDArray[np.intp]) -> Real:
         """Rarity and colours of sets whose first k members are (k, M), at most: if the others
@@ -162,7 +176,8 @@ class _Looks:
         rarity = self.rarity[members]
         same = self.same.take(members[:, None] * len(self.rarity) + members).sum(axis=1)
         same += others * self.nearest[members]
-        return np.asarray(rarity.sum(axis=0) + others * rarity.max(axis=0) + same.max(axis=0))
+        rest = others * np.maximum(rarity.max(axis=0), self.rarity.max())
+        return np.asarray(rarity.sum(axis=0) + rest + same.max(axis=0))
 
     def alike(self, members: NDArray[np.intp]) -> Real:
         """Of sets (n, M): see ``log_alike``."""
@@ -171,7 +186,8 @@ class _Looks:
     def exactly(self, members: NDArray[np.intp]) -> Real:
         """Rarity and colours of sets (n, M)."""
         sets = np.ascontiguousarray(members.T)
-        return self.clutter.rarity_of(sets) + self.colours.log_common(sets)
+        said = self.clutter.rarity_of(sets) + self.colours.log_common(sets)
+        return np.asarray(said + self.likeness[sets].sum(axis=1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,14 +210,14 @@ class _Sets:
         self,
         step: _Step,
         expected: Complex,
-        apart: Complex,
+        z: Complex,
         parent: NDArray[np.intp],
         peak: NDArray[np.intp],
     ) -> _Sets:
         """Sets ``parent`` (L,) with one more ``peak`` (L,) each, if that is not too far from
         where it is expected: (M,), see ``_Step.expected``."""
         before, span = self.members[:, parent], self.span[parent]
-        b = apart[before[0], peak] / self.ends[parent]
+        b = (z[peak] - z[before[0]]) / self.ends[parent]
         below, near = step.judge(b - expected[parent], span)
         kept = np.flatnonzero(near & (before != peak).all(axis=0))
         parent, span, below = parent[kept], span[kept], below[kept]

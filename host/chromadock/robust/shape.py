@@ -19,20 +19,29 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.robust.evidence import placed_along
+from chromadock.robust.layout import finest_cell
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
-ATTITUDE_RAD = np.radians([10.0, 20.0, 10.0])
+ATTITUDE_RAD = np.radians([10.0, 22.0, 12.0])
 """Standard deviations of pitch, yaw and roll between dock and camera: a vehicle on its way
 to the dock swims level and about along its axis."""
 
-MIN_SPACING_PX = 8.0
-"""Of the closest markers of the farthest dock of interest: cells that do not touch."""
+MIN_SPACING_CELLS = 2.0
+"""Of the closest markers of the farthest dock of interest, in finest cells, which do not touch."""
 
-_VIEWS = 12_000  # half of them are whole, and a fifth of those falls in each of ...
-_SPANS = 5  # ... as many spans of size: covariances to 4%
-_TAIL = 0.005  # of the views may lie outside a window, at each end
+FACETS = 5
+"""Ways to look at a dock: along its axis, and from the left, the right, above and below.  Seen
+from near, one side of a turned dock looks larger than the other, which is another distribution
+of shapes each way."""
+
+_ALONG_AXIS = float(np.sin(np.radians(12.0)))
+
+_VIEWS = 60_000  # half of them are whole, and an eighth of those falls in each of ...
+_SPANS = 8  # ... as many spans of size: covariances to 4%
+_ROOM = 1.15  # of windows beyond all views
+_TAIL = 0.001  # of the views may be shorter than a window
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +59,9 @@ class Window:
         mean = displacements.mean()
         direction = complex(mean / abs(mean))
         turned = np.abs(np.angle(displacements / direction))
-        shortest, longest = np.quantile(np.abs(displacements), [_TAIL, 1 - _TAIL])
-        half_angle = min(float(np.quantile(turned, 1 - _TAIL)), 1.4)
-        return cls(float(shortest), float(longest), direction, half_angle)
+        shortest, longest = np.quantile(np.abs(displacements), [_TAIL, 1.0])
+        half_angle = min(_ROOM * float(turned.max()), 1.4)
+        return cls(float(shortest) / _ROOM, float(longest) * _ROOM, direction, half_angle)
 
     def beyond(self, length: float) -> Window:
         """Without what is shorter."""
@@ -83,6 +92,7 @@ class ShapeModel:
     side: Window
     roll_rad: float
     edges: Real
+    log_share: Real
     mean: Real
     covariance: Real
 
@@ -90,12 +100,14 @@ class ShapeModel:
     def learn(cls, points: Real, camera: CameraModel) -> ShapeModel:
         """Simulate views of (n, 3) markers; the same for the same markers and camera."""
         order = _order(points)
-        z = _views(points[list(order)], camera)
+        z, facet = _views(points[list(order)], camera)
         base, side = z[:, 1] - z[:, 0], z[:, 2] - z[:, 0]
         shape = stacked((z[:, 2:] - z[:, :1]) / base[:, None])
         edges = np.quantile(np.abs(base), np.arange(1, _SPANS) / _SPANS)
-        span = np.searchsorted(edges, np.abs(base))
+        span = np.searchsorted(edges, np.abs(base)) * FACETS + facet
         window = Window.of(base)
+        parts = [shape[span == s] for s in range(_SPANS * FACETS)]
+        share = np.array([len(part) for part in parts]).reshape(_SPANS, FACETS)
         return cls(
             order=order,
             along=placed_along(points)[list(order)],
@@ -103,8 +115,9 @@ class ShapeModel:
             side=Window.of(side),
             roll_rad=float(np.angle(base / window.direction).std()),
             edges=edges,
-            mean=np.array([shape[span == s].mean(axis=0) for s in range(_SPANS)]),
-            covariance=np.array([np.cov(shape[span == s].T) for s in range(_SPANS)]),
+            log_share=np.log(share / share.sum(axis=1, keepdims=True)).ravel(),
+            mean=np.array([part.mean(axis=0) for part in parts]),
+            covariance=np.array([np.cov(part.T) for part in parts]),
         )
 
     def log_base(self, base: Complex) -> Real:
@@ -115,6 +128,7 @@ class ShapeModel:
             -0.5 * angle**2 - np.log(spread * np.sqrt(2 * np.pi)) - 2 * np.log(np.abs(base))
         )
 
+
     def log_shape(self, z: Complex, sigma_px: Real) -> Real:
         """(N,) log density of sets of markers at ``z`` (N, n), known to ``sigma_px`` (N, n),
         given their bases: in square pixels to the power n - 2; both in the shape's order.
@@ -122,16 +136,17 @@ class ShapeModel:
         base = z[:, 1] - z[:, 0]
         size = np.abs(base)
         b = (z[:, 2:] - z[:, :1]) / base[:, None]
-        span = np.searchsorted(self.edges, size)
         # b moves by (dz_m - (1 - b) dz_p - b dz_q) / base.
         by_p, by_q = (1 - b) * sigma_px[:, :1], b * sigma_px[:, 1:2]
         known = by_p[:, :, None] * by_p.conj()[:, None] + by_q[:, :, None] * by_q.conj()[:, None]
         known += sigma_px[:, 2:, None] ** 2 * np.eye(b.shape[1])
-        covariance = self.covariance[span] + _as_real(known / size[:, None, None] ** 2)
-        off = stacked(b) - self.mean[span]
-        square = (off * np.linalg.solve(covariance, off[..., None])[..., 0]).sum(axis=1)
+        span = np.searchsorted(self.edges, size)[:, None] * FACETS + np.arange(FACETS)
+        covariance = self.covariance[span] + _as_real(known / size[:, None, None] ** 2)[:, None]
+        off = stacked(b)[:, None] - self.mean[span]
+        square = (off * np.linalg.solve(covariance, off[..., None])[..., 0]).sum(axis=2)
         log_norm = 0.5 * np.linalg.slogdet(2 * np.pi * covariance)[1]
-        return np.asarray(-0.5 * square - log_norm - 2 * b.shape[1] * np.log(size))
+        facets = self.log_share[span] - 0.5 * square - log_norm
+        return np.asarray(np.logaddexp.reduce(facets, axis=1) - 2 * b.shape[1] * np.log(size))
 
 
 def stacked(values: Complex) -> Real:
@@ -168,14 +183,15 @@ def _order(points: Real) -> tuple[int, ...]:
     return (p, q, *others)
 
 
-def _views(points: Real, camera: CameraModel) -> Complex:
-    """(V, n) places of the markers in views that the camera sees whole."""
+def _views(points: Real, camera: CameraModel) -> tuple[Complex, NDArray[np.intp]]:
+    """(V, n) places of the markers in views that the camera sees whole, and the facet of each."""
     rng = np.random.default_rng(0)
     corners = camera.undistort([(0, 0), (camera.width - 1, camera.height - 1)])
     low, high = corners.min(axis=0), corners.max(axis=0)
     apart = np.linalg.norm(points[:, None] - points[None], axis=2)
     nearest = float(apart.max() / np.linalg.norm(high - low))
-    farthest = focal_px(camera) * float(apart[apart > 0].min()) / MIN_SPACING_PX
+    farthest = focal_px(camera) * float(apart[apart > 0].min())
+    farthest /= MIN_SPACING_CELLS * finest_cell(camera.width, camera.height)
     # Even in log range; a camera too coarse for this dock still gets views at twice the nearest.
     ranges = nearest * max(farthest / nearest, 2.0) ** rng.random(_VIEWS)
     rays = np.column_stack([rng.uniform(low, high, (_VIEWS, 2)), np.ones(_VIEWS)])
@@ -186,7 +202,17 @@ def _views(points: Real, camera: CameraModel) -> Complex:
     seen = seen[in_front]
     tangents = seen[..., :2] / seen[..., 2:]
     whole = ((tangents > low) & (tangents < high)).all(axis=(1, 2))
-    return np.asarray(focal_px(camera) * (tangents[whole] @ np.array([1, 1j])))
+    z = focal_px(camera) * (tangents[whole] @ np.array([1, 1j]))
+    return np.asarray(z), _facets(R[in_front][whole], centres[in_front][whole])
+
+
+def _facets(R: Real, centres: Real) -> NDArray[np.intp]:
+    """(V,) from which side (V, 3, 3) docks are seen at (V, 3) places."""
+    sight = centres / np.linalg.norm(centres, axis=1, keepdims=True)
+    normal = R[:, :, 2]
+    x, y, _ = (normal - (normal * sight).sum(axis=1, keepdims=True) * sight).T
+    turned = np.where(np.abs(x) > np.abs(y), np.where(x > 0, 1, 2), np.where(y > 0, 3, 4))
+    return np.where(np.hypot(x, y) < _ALONG_AXIS, 0, turned)
 
 
 def _rotations(angles: Real) -> Real:

@@ -1,0 +1,88 @@
+"""How likely markers are to stand where they were measured, if they are the dock's.
+
+The density of the places, integrated over all poses of the dock by Laplace's method: about each
+pose that the markers leave open, the reprojection errors are a quadratic form of the pose's, and
+the integral of a normal density is known (MacKay, Information Theory, Inference, and Learning
+Algorithms, 2003, chapter 27).  No threshold is asked of the reprojection error: a poor fit is
+less likely, and that is all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.camera import CameraModel
+from chromadock.pose import Estimate, Sighting, projected
+
+Real = NDArray[np.float64]
+
+MISFITS = np.array([0.0, 0.001, 0.002, 0.004, 0.008, 0.016])
+"""Errors that all markers of a frame share in kind, of the dock's extent in the picture: a file
+that is some per cent off, a lens that the calibration describes badly, a rolling or interlaced
+shutter on a moving vehicle.  Each is as likely as the other."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PosePrior:
+    """What is known of a dock's pose before the frame is seen.
+
+    Its bearing is anywhere in the picture, its range anywhere on a logarithmic scale that spans
+    ``log_ranges`` e-foldings; its attitude is normal about ``R_expected`` (3, 3), with standard
+    deviations ``attitude_rad`` (3,) of turns about the camera's axes.
+    """
+
+    camera: CameraModel
+    area_px: float
+    focal_px: float
+    log_ranges: float
+    R_expected: Real
+    attitude_rad: Real
+
+    def log_density(self, R: Real, t: Real) -> float:
+        """Of a pose, a cubic metre and cubic radian."""
+        # A volume of z^3 / f^2 lies behind each square pixel and e-folding of range.
+        place = 2 * np.log(self.focal_px) - 3 * np.log(t[2]) - np.log(self.area_px * self.log_ranges)
+        turn = cv2.Rodrigues(R @ self.R_expected.T)[0].ravel() / self.attitude_rad
+        norm = np.log(self.attitude_rad).sum() + 1.5 * np.log(2 * np.pi)
+        return float(place - 0.5 * turn @ turn - norm)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Placement:
+    """``log_density`` of the places, a square pixel each; ``sigma_px`` (N,): their errors, with
+    what they turned out to share; ``weights`` (P,): of the poses, which sum to 1."""
+
+    log_density: float
+    sigma_px: Real
+    weights: Real
+
+
+def placement(sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior) -> Placement:
+    """Of markers that leave ``poses`` open, one or more."""
+    extent = float(np.linalg.norm(np.ptp(sighting.pixels, axis=0)))
+    variances = sighting.sigma_px**2 + (MISFITS[:, None] * extent) ** 2
+    logs = np.array([_of_pose(sighting, pose, prior, variances) for pose in poses])
+    by_misfit = np.logaddexp.reduce(logs, axis=0) - np.log(len(MISFITS))
+    sigma_px = np.sqrt(variances[int(by_misfit.argmax())])
+    by_pose = np.logaddexp.reduce(logs, axis=1)
+    weights = np.exp(by_pose - np.logaddexp.reduce(by_pose))
+    return Placement(float(np.logaddexp.reduce(by_misfit)), sigma_px, weights)
+
+
+def _of_pose(sighting: Sighting, pose: Estimate, prior: PosePrior, variances: Real) -> Real:
+    """(M,) log density of the places about one pose, for (M, N) variances of theirs."""
+    seen = projected(sighting.points_dock, pose.R, pose.t, sighting.camera)
+    if seen is None or pose.t[2] <= 0:
+        return np.full(len(variances), -np.inf)
+    pixels, jacobian = seen
+    square = ((pixels - sighting.pixels) ** 2).sum(axis=1)
+    known = np.einsum("nki,nkj,mn->mij", jacobian, jacobian, 1 / variances)
+    known[:, 3:, 3:] += np.diag(1 / prior.attitude_rad**2)
+    known[:, :3, :3] += np.eye(3) / pose.t[2] ** 2
+    fit = -0.5 * (square / variances).sum(axis=1) - np.log(2 * np.pi * variances).sum(axis=1)
+    volume = 3 * np.log(2 * np.pi) - 0.5 * np.linalg.slogdet(known)[1]
+    return np.asarray(fit + volume + prior.log_density(pose.R, pose.t))

@@ -65,6 +65,7 @@ def draw(index: int, seed: int, backdrops: Backdrops, **fixed: Fixed) -> Scene:
         lamp_profile=draws.share("lamp_profile"),
         lamp_radius_m=scale * draws.between("lamp_radius_m"),
         radiance=draws.between("radiance"),
+        crosstalk=draws.between("crosstalk"),
         unlikeness=unlikeness,
         lamp_gains=tuple((1 + unlike).tolist()),
         holders_m=tuple(scale * d for d in draws.several("holder_m", len(points))),

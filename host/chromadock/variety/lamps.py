@@ -41,15 +41,16 @@ class Lamp:
         From the camera.
     light
         (3,) radiance of its face, linear RGB, full scales.
-    dome
-        Whether it is brightest in its middle, as a diffusing dome is, or even.
+    profile
+        ``disc``: even, with an edge; ``dome``: with an edge, darker towards it; ``bulb``: a bell
+        whose standard deviation is half the radius.
     """
 
     pixel: Floats
     radius_px: float
     range_m: float
     light: Floats
-    dome: bool = False
+    profile: str = "disc"
 
 
 def add_lamp(
@@ -71,7 +72,7 @@ def add_lamp(
     """
     straight, scattered = _reaching(lamp, attenuation, scattered_share)
     energy = np.pi * lamp.radius_px**2 * lamp.light
-    _add(light, lamp, aspect, lamp.radius_px + 6 * EDGE_PX + 2, energy * straight, _face(lamp))
+    _add(light, lamp, aspect, _reach(lamp), energy * straight, _face(lamp))
     reach = lamp.radius_px + HALO_REACH * halo_px
     radii = np.linspace(0, reach * 1.01, 96)
     spots = lamp.radius_px * _SUNFLOWER
@@ -105,15 +106,19 @@ def _reaching(lamp: Lamp, attenuation: Floats, scattered_share: float) -> tuple[
     return straight, either - straight
 
 
+def _reach(lamp: Lamp) -> float:
+    return (2.2 if lamp.profile == "bulb" else 1.0) * lamp.radius_px + 6 * EDGE_PX + 2
+
+
 def _face(lamp: Lamp) -> tuple[Floats, Floats]:
     """Radii and what of the lamp's light is in a pixel there; its sum over pixels is one."""
     size = max(lamp.radius_px, 0.0)
-    radii = np.linspace(0, size + 6 * EDGE_PX + 3, 128)
-    if size < 3 * EDGE_PX:
+    radii = np.linspace(0, _reach(lamp), 160)
+    if size < 3 * EDGE_PX or lamp.profile == "bulb":
         sigma = np.hypot(EDGE_PX, size / 2)
         return radii, np.exp(-0.5 * (radii / sigma) ** 2) / (2 * np.pi * sigma**2)
     edge = 1 / (1 + np.exp(np.clip((radii - size) / (0.55 * EDGE_PX), -50, 50)))
-    profile = edge * (1.15 - np.minimum(radii / size, 1) ** 2) if lamp.dome else edge
+    profile = edge * (1.15 - np.minimum(radii / size, 1) ** 2) if lamp.profile == "dome" else edge
     whole = 2 * np.pi * float((profile * radii).sum() * radii[1])
     return radii, profile / whole
 

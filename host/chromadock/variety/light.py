@@ -15,8 +15,8 @@ from chromadock.colour.working_image import smooth, working_image
 from chromadock.variety.scene import Floats, Image, Scene
 
 PHOTOGRAPH_GAMMA = 2.2
-CROSSTALK = np.array([[1, 0.05, 0.02], [0.10, 1, 0.15], [0.02, 0.2, 1]])
-"""No LED is one channel's alone, nor is a channel one LED's: rows are the camera's R, G, B."""
+CROSSTALK = np.array([[0, 0.05, 0.02], [0.10, 0, 0.15], [0.02, 0.2, 0]])
+"""What an LED of one colour gives in the other channels: rows are the camera's R, G, B."""
 FIXED_COLOURS = {
     "blue": (0, 0, 255),
     "green": (0, 255, 0),
@@ -80,8 +80,13 @@ def automatic_gain(light: Image, target: float) -> float:
     return float(np.clip(target**PHOTOGRAPH_GAMMA / max(mean, 1e-6), 0.1, 16))
 
 
-def lamp_light(rgb: tuple[int, int, int], radiance: float) -> Floats:
-    """(3,) radiance of an LED's face in a camera's channels, full scales."""
+def lamp_light(rgb: tuple[int, int, int], radiance: float, crosstalk: float) -> Floats:
+    """(3,) radiance of an LED's face in a camera's channels, full scales.
+
+    Parameters
+    ----------
+    crosstalk : 0 for a camera that corrects its colours in full, 1 for one that does not.
+    """
     pure = (np.array(rgb) / 255) ** PHOTOGRAPH_GAMMA
-    light = CROSSTALK @ pure
+    light = (np.eye(3) + crosstalk * CROSSTALK) @ pure
     return np.asarray(radiance * light / light.max(), np.float64)

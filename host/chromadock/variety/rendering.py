@@ -48,7 +48,7 @@ def render_at(
     light = behind * np.float32(scene.daylight_level)
     places = (dock.points if dock else np.zeros((0, 3))) @ R.T + t
     painter = Painter(light, camera, water)
-    own = lamp_light(lamp_rgb, 1.0)
+    own = lamp_light(lamp_rgb, 1.0, scene.crosstalk)
     things = [(thing, R @ np.array(thing.place) + t) for thing in scene.things]
     things = sorted((x for x in things if x[1][2] > NEAREST_M), key=lambda x: -x[1][2])
     dock_m = float(places[:, 2].mean()) if len(places) else np.inf
@@ -62,7 +62,7 @@ def render_at(
 
     focal = float(camera.matrix[0, 0])
     pixels = camera.project(places)
-    lit = lamp_light(lamp_rgb, scene.radiance)
+    lit = lamp_light(lamp_rgb, scene.radiance, scene.crosstalk)
     lamps = [
         _lamp(pixel, place, scene.lamp_radius_m, gain * lit, focal, scene)
         for pixel, place, gain in zip(pixels, places, scene.lamp_gains, strict=True)
@@ -90,5 +90,4 @@ def _lamp(
     pixel: Floats, place: Floats, radius_m: float, light: Floats, focal: float, scene: Scene
 ) -> Lamp:
     range_m = float(np.linalg.norm(place))
-    dome = scene.lamp_profile == "dome"
-    return Lamp(pixel, focal * radius_m / range_m, range_m, light, dome)
+    return Lamp(pixel, focal * radius_m / range_m, range_m, light, scene.lamp_profile)

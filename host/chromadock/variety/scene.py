@@ -75,6 +75,7 @@ class Scene:
     lamp_profile: str
     lamp_radius_m: float
     radiance: float
+    crosstalk: float
     unlikeness: float
     lamp_gains: tuple[float, ...]
     holders_m: tuple[float, ...]

@@ -137,7 +137,8 @@ class Scene:
     @property
     def bars(self) -> tuple[tuple[int, int], ...]:
         """Pairs of markers that a bar joins."""
-        return variety().docks[self.dock].bars if "bars" in self.build else ()
+        barred = self.dock != NO_DOCK and "bars" in self.build
+        return variety().docks[self.dock].bars if barred else ()
 
     def factors(self) -> dict[str, str | float | int]:
         """Every drawn name and number but those of single lamps and things, to tabulate by."""

@@ -36,10 +36,12 @@ def taken(
     linear = _demosaiced(_raw(light, gain, scene.shot_noise, rng))
     if scene.white_balance == "automatic":
         linear = _balanced(linear, scene.balance)
-    picture = np.take(_tone_curve(scene.gamma, scene.s_curve), linear)
-    picture += np.float32(scene.code_noise) * rng.standard_normal(picture.shape, np.float32)
-    coded = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
-    return through_jpeg(coded, scene.jpeg_quality, scene.subsampling)
+    picture = np.take(_tone_curve(scene.gamma, scene.s_curve), linear, mode="clip")
+    noise = rng.standard_normal(picture.shape, np.float32)
+    noise *= np.float32(scene.code_noise)
+    picture += noise
+    np.clip(np.rint(picture, out=picture), 0, 255, out=picture)
+    return through_jpeg(picture.astype(np.uint8), scene.jpeg_quality, scene.subsampling)
 
 
 def two_fields(light: Image, scene: Scene) -> Image:

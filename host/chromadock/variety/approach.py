@@ -24,7 +24,8 @@ FROM_M, TO_M = 7.0, 0.7
 HEADING_DEG, SWAY_DEG, ROCK_DEG = 20.0, 4.0, 3.0
 """At most: between the vehicle's heading and the dock's axis; how far heading, and pitch and
 roll, swing to either side."""
-PERIODS_S = (3.0, 9.0)
+ROCKING_S, DRIFTING_S = (3.0, 9.0), (8.0, 20.0)
+"""Periods of the attitude's swing and of the way's."""
 TELEMETRY_DEG = 1.0
 """Step of the attitude that is told."""
 CLOSER = 0.15
@@ -119,16 +120,10 @@ def draw_path(scene: Scene) -> Path:
     """A smooth way in; the dock's centre stays where the frame has room for the dock."""
     rng = np.random.default_rng([scene.seed, scene.index, 3])
     time_s = np.arange(round(DURATION_S * RATE_HZ)) / RATE_HZ
-    heading = rng.uniform(-HEADING_DEG, HEADING_DEG)
-    angles = np.radians(
-        np.column_stack(
-            [
-                ROCK_DEG * _swing(time_s, rng),
-                ROCK_DEG * _swing(time_s, rng),
-                heading + SWAY_DEG * _swing(time_s, rng),
-            ]
-        )
-    )
+    swing = np.radians((ROCK_DEG, ROCK_DEG, SWAY_DEG))
+    rocking = swing * np.column_stack([_swing(time_s, ROCKING_S, rng) for _ in range(3)])
+    angles = rocking.copy()
+    angles[:, 2] += np.radians(rng.uniform(-HEADING_DEG, HEADING_DEG))
     R = np.array(
         [
             (Attitude(*rad).R_world_body @ R_BODY_CAMERA_FORWARD).T @ R_BODY_CAMERA_FORWARD
@@ -141,16 +136,18 @@ def draw_path(scene: Scene) -> Path:
     extent = np.ptp(dock.points, axis=0)[:2] if dock else np.full(2, scene.width_m)
     corner = camera.undistort([(0.0, 0.0), (camera.width - 1.0, camera.height - 1.0)])
     middle, half = corner.mean(axis=0), 0.5 * (corner[1] - corner[0])
-    room = np.maximum(0.85 * half - 0.55 * extent / z[:, None], 0.02 * half)
-    sway = np.column_stack([_swing(time_s, rng), _swing(time_s, rng)])
-    centre = rng.uniform(-0.6, 0.6, 2) + 0.4 * sway
-    ray = np.column_stack([middle + room * centre, np.ones(len(z))])
-    return Path(time_s, angles, R, z[:, None] * ray)
+    room = 0.85 * half - 0.55 * extent / z[:, None] - swing[2:0:-1]
+    drift = np.column_stack([_swing(time_s, DRIFTING_S, rng) for _ in range(2)])
+    centre = rng.uniform(-0.6, 0.6, 2) + 0.25 * drift
+    # A turn to the right moves all in view to the left, the bow's rise moves it down.
+    turned = rocking[:, 2:0:-1] * (-1, 1)
+    ray = middle + np.maximum(room, 0.02 * half) * centre + turned
+    return Path(time_s, angles, R, z[:, None] * np.column_stack([ray, np.ones(len(z))]))
 
 
-def _swing(time_s: Floats, rng: np.random.Generator) -> Floats:
+def _swing(time_s: Floats, periods_s: tuple[float, float], rng: np.random.Generator) -> Floats:
     """(N,) within -1..1: two sines."""
-    periods, phases = rng.uniform(*PERIODS_S, 2), rng.uniform(0, 2 * np.pi, 2)
+    periods, phases = rng.uniform(*periods_s, 2), rng.uniform(0, 2 * np.pi, 2)
     share = rng.uniform(0.3, 0.7)
     first, second = np.sin(2 * np.pi * time_s[:, None] / periods + phases).T
     return np.asarray(share * first + (1 - share) * second)

@@ -83,6 +83,8 @@ def render_at(
     frame = taken(light, scene, rng, variety().cameras[scene.camera].interlaced)
     size = np.array([camera.width, camera.height])
     in_view = np.asarray(((pixels >= -0.5) & (pixels < size - 0.5)).all(axis=1))
+    if dock is None:
+        R, t = np.full((3, 3), np.nan), np.full(3, np.nan)
     return frame, Truth(camera, dock, R, t, pixels, in_view, lamp_rgb)
 
 

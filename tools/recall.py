@@ -1,181 +1,141 @@
-"""How often the dock is found, how exactly, and how often where there is none.
+"""How often the dock is found, how often elsewhere than it is, and how often where none is.
 
-.venv/bin/python tools/recall.py [--method robust|paper] [--frames N] [--seed N] [--jobs N]
+.venv/bin/python tools/recall.py [--frames N] [--seed N] [--half develop|report] [--jobs N]
+    [--distances 0.7 1 ...] [--fixed camera=hd ...] [--photographs FOLDER ...]
+    [--save FOLDER] [--json FILE] [--scenes variety|old]
 
-Markers are composited on the photographs of ../shared/data (tests/robust_composites.py); the
-same seed makes the same frames.  A dock is recalled if every marker is within NEAR_PX; the true
-pose is covered if it lies in the 95% region of either of the two poses.  ``limit`` is the share
-of frames in which every marker is MIN_SNR times the local noise or more at its true place: about
-what one frame allows.  False docks are counted on all photographs as they are, and, to know the
-rate below one in 43, also mirrored left to right and looked at for the other mappings' colours.
+Scenes are drawn by chromadock.variety; the same seed makes the same ones.  A dock is recalled
+if every marker is within 3 pixels or 0.5 % of the width, whichever is more, and its place within
+5 % of the range; wrong is a dock that is found with its place off by more.  ``limit`` is the
+share of frames in which every marker stands out of the noise at its true place.  False docks are
+counted in scenes that show lamps and no dock, and on the photographs of --photographs, each for
+each mapping, as it is and as JPEG once more.  ``--scenes old`` prints the table of docs/robust.md.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
-from functools import cache
 from itertools import product
 from pathlib import Path
 
-import cv2
-import numpy as np
+import recall_old
+from recall_tables import Row, by_distance, by_factors
+from recall_trials import photograph_trial, scene_trial
 from step import ROOT
 
-sys.path.insert(0, str(ROOT / "tests"))
-from robust_composites import CAMERA, DOCK, Composite, compose, read
+from chromadock.detector import DEFAULT_METHOD, METHODS
+from chromadock.errors import ChromadockError
+from chromadock.variety import Backdrops, Half
+from chromadock.variety.backdrops import pictures
+from chromadock.variety.factors import check_names, variety
 
-from chromadock import Detection, Detector
-from chromadock.detector import DEFAULT_METHOD, MAPPINGS, METHODS
-from chromadock.method import HUE_RANGE
-from chromadock.robust.peaks import MIN_SNR
-from chromadock.robust.response import respond
-from chromadock.robust.shape import focal_px
-from chromadock.rotation import matrix_from_quaternion
-
-PHOTOGRAPHS = ROOT.parent / "shared" / "data" / "transdec"
-DISTANCES_M = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
-FRAMES = 204  # each of the 17 backgrounds twelve times
-NEAR_PX = 3.0
-COVERED = 12.59  # chi-square with six degrees of freedom, 95%
-
-
-@dataclass(frozen=True, slots=True)
-class Trial:
-    """What a detector made of one composite; errors are of a recalled dock."""
-
-    range_m: float
-    found: bool
-    recalled: bool
-    standing_out: bool
-    range_error: float = np.nan
-    attitude_error_deg: float = np.nan
-    covered: bool | None = None
-    total_ms: float = np.nan
-
-
-def backgrounds() -> list[Path]:
-    """The photographs without anything that could be a dock's."""
-    return sorted((PHOTOGRAPHS / "backgrounds").glob("*.jpg"))
-
-
-@cache
-def detector(method: str, mapping: str = "ternary") -> Detector:
-    """One a process."""
-    cv2.setNumThreads(1)
-    return Detector(CAMERA, DOCK, method=method, mapping=mapping, independent=True)
-
-
-def trial(method: str, range_m: float, seed: int, index: int) -> Trial:
-    """Compose one frame and look at it."""
-    files = backgrounds()
-    rng = np.random.default_rng([seed, round(1000 * range_m), index])
-    scene = compose(read(files[index % len(files)]), range_m, rng)
-    seen = detector(method).process(scene.frame_bgr, 0.0)
-    total_ms = seen.timing_ms["total"]
-    standing_out = _standing_out(scene, seen.marker.hue_deg)
-    if not seen.found or seen.markers is None or seen.pose is None:
-        return Trial(range_m, False, False, standing_out, total_ms=total_ms)
-    apart = [
-        np.hypot(*np.subtract(seen.markers[name], pixel))
-        for name, pixel in zip(DOCK.names, scene.pixels, strict=True)
-    ]
-    if max(apart) >= NEAR_PX:
-        return Trial(range_m, True, False, standing_out, total_ms=total_ms)
-    turn = matrix_from_quaternion(seen.pose.q_wxyz).T @ scene.R
-    cosine = np.clip((np.trace(turn) - 1) / 2, -1, 1)
-    return Trial(
-        range_m,
-        True,
-        True,
-        standing_out,
-        range_error=float(np.linalg.norm(seen.pose.t) / np.linalg.norm(scene.t) - 1),
-        attitude_error_deg=float(np.degrees(np.arccos(cosine))),
-        covered=_covered(seen, scene.R, scene.t),
-        total_ms=total_ms,
-    )
-
-
-def _standing_out(scene: Composite, hue_deg: float) -> bool:
-    """Whether each marker's brightest cell nearby is MIN_SNR or more, at any scale."""
-    hue = round(hue_deg * HUE_RANGE / 360) % HUE_RANGE
-    best = np.zeros(len(scene.pixels))
-    response = respond(scene.frame_bgr, hue, focal_px(CAMERA))
-    highest = cv2.dilate(response.snr, np.ones((3, 3), np.uint8)).ravel()
-    for scale, cell in enumerate(response.layout.cells):
-        x, y = np.floor((scene.pixels + 0.5) / cell).astype(int).T
-        best = np.maximum(best, highest[response.layout.at(scale, y, x)])
-    return bool((best >= MIN_SNR).all())
-
-
-def _covered(seen: Detection, R: np.ndarray, t: np.ndarray) -> bool | None:
-    """Whether the truth lies in the region of either pose; None without a covariance."""
-    poses = getattr(seen, "estimates", ())
-    return bool(min(pose.distance(R, t) for pose in poses) < COVERED) if poses else None
-
-
-def false_docks(method: str, photograph: Path) -> list[tuple[str, bool, bool]]:
-    """Mapping, mirrored and found, each way to look at one photograph."""
-    frame = read(photograph)
-    ways = product(MAPPINGS, (False, True))
-    return [
-        (mapping, mirrored, _found(method, mapping, frame[:, ::-1] if mirrored else frame))
-        for mapping, mirrored in ways
-    ]
-
-
-def _found(method: str, mapping: str, frame_bgr: np.ndarray) -> bool:
-    return detector(method, mapping).process(np.ascontiguousarray(frame_bgr), 0.0).found
-
-
-def table(trials: list[Trial]) -> Iterator[str]:
-    """One line a distance."""
-    yield "distance  frames  recall  limit  wrong  range error  attitude error  covered  median ms"
-    for range_m in sorted({t.range_m for t in trials}):
-        here = [t for t in trials if t.range_m == range_m]
-        good = [t for t in here if t.recalled]
-        wrong = sum(t.found and not t.recalled for t in here)
-        off = np.median([abs(t.range_error) for t in good]) if good else np.nan
-        turned = np.median([t.attitude_error_deg for t in good]) if good else np.nan
-        known = [t.covered for t in good if t.covered is not None]
-        covered = f"{np.mean(known):7.3f}" if known else "      -"
-        total_ms = np.median([t.total_ms for t in here])
-        yield (
-            f"{range_m:6.1f} m  {len(here):6d}  {len(good) / len(here):6.3f}"
-            f"  {np.mean([t.standing_out for t in here]):5.3f}  {wrong:5d}"
-            f"  {100 * off:9.2f} %  {turned:9.1f} deg  {covered}  {total_ms:9.2f}"
-        )
+BACKGROUNDS = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
+FRAMES = 100
+NO_DOCK_SHARE = 0.5
+"""Scenes without a dock for each with one at a single distance."""
 
 
 def main() -> int:
-    """Print the table and the false docks; exit status 3 without photographs."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--method", choices=METHODS, default=DEFAULT_METHOD)
-    parser.add_argument("--frames", type=int, default=FRAMES, help="a distance")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--distances", type=float, nargs="*", default=DISTANCES_M)
-    args = parser.parse_args()
-    if not PHOTOGRAPHS.is_dir():
-        print(f"no photographs: {PHOTOGRAPHS.relative_to(ROOT.parent)} is missing", file=sys.stderr)
-        return 3
-    with ProcessPoolExecutor(args.jobs) as pool:
-        work = list(product(args.distances, range(args.frames)))
-        jobs = [pool.submit(trial, args.method, d, args.seed, i) for d, i in work]
-        print(f"method {args.method}, seed {args.seed}")
-        for line in table([job.result() for job in jobs]):
-            print(line)
-        files = sorted(PHOTOGRAPHS.glob("*/*.jpg"))
-        looks = [pool.submit(false_docks, args.method, f) for f in files]
-        seen = [(f, look) for f, job in zip(files, looks, strict=True) for look in job.result()]
-    plain = [f.stem for f, look in seen if look == ("ternary", False, True)]
-    every = sum(found for _, (_, _, found) in seen)
-    print(f"false docks: {len(plain)} on {len(files)} photographs {' '.join(plain)}")
-    print(f"             {every} of {len(seen)} with those mirrored and the other mappings")
+    """Print the tables; exit status 2 for a wrong option, 3 without photographs."""
+    args = _arguments()
+    if args.scenes == "old":
+        distances = [float(d) for d in args.distances] if args.distances else None
+        return recall_old.main(args.method, args.frames, args.seed, args.jobs, distances)
+    try:
+        rows, empty, looks = _run(args)
+    except ChromadockError as error:
+        print(error, file=sys.stderr)
+        return 2
+    if rows:
+        print(f"method {args.method}, half {args.half}, seed {args.seed}")
+        print("\n".join([*by_distance(rows), *by_factors(rows), ""]))
+    wrong = sum(r["found"] for r in empty)
+    print(f"false docks: {wrong} in {len(empty)} scenes of lamps without a dock")
+    for quality in sorted({r["jpeg_quality"] for r in looks}, key=lambda q: q or 101):
+        here = [r for r in looks if r["jpeg_quality"] == quality]
+        found = sorted({f"{r['photograph']} ({r['mapping']})" for r in here if r["found"]})
+        way = "as they are" if quality is None else f"as JPEG {quality}"
+        print(f"             {len(found)} in {len(here)} looks at photographs {way}")
+        print("".join(f"               {name}\n" for name in found), end="")
+    if args.json:
+        lines = "".join(json.dumps(row) + "\n" for row in (*rows, *empty, *looks))
+        args.json.write_text(lines, encoding="utf-8")
     return 0
+
+
+def _run(args: argparse.Namespace) -> tuple[list[Row], list[Row], list[Row]]:
+    """Scenes with a dock, those without one, and the photographs."""
+    half = Half(args.half)
+    fixed = _fixed(args.fixed)
+    backdrops = Backdrops.of_folders(BACKGROUNDS, args.photographs).half(half)
+    if args.save:
+        args.save.mkdir(parents=True, exist_ok=True)
+    distances: Sequence[str] = args.distances or tuple(variety().shares["distance"])
+    count = FRAMES if args.frames is None else args.frames
+    empty = int(NO_DOCK_SHARE * count) if args.no_dock is None else args.no_dock
+    seed = half.seed(args.seed)
+    with ProcessPoolExecutor(args.jobs) as pool:
+        # An index is a scene's own, so that distances do not share their backdrops.
+        scenes = [
+            pool.submit(
+                scene_trial,
+                args.method,
+                100_000 * n + i,
+                seed,
+                backdrops,
+                {"distance": distance, **fixed},
+                args.save,
+            )
+            for (n, distance), i in product(enumerate(distances), range(count))
+        ]
+        none = [
+            pool.submit(
+                scene_trial, args.method, i, seed, backdrops, {**fixed, "dock": "none"}, args.save
+            )
+            for i in range(10_000_000, 10_000_000 + empty)
+        ]
+        files = [p for folder in args.photographs for p in pictures(folder) if half.has(p)]
+        every = len(files) if args.looks is None else max(args.looks, 1)
+        files = files[:: max(len(files) // max(every, 1), 1)]
+        looks = [pool.submit(photograph_trial, args.method, path) for path in files]
+        return (
+            [job.result() for job in scenes],
+            [job.result() for job in none],
+            [row for job in looks for row in job.result()],
+        )
+
+
+def _fixed(pairs: Sequence[str]) -> dict[str, str | float]:
+    fixed: dict[str, str | float] = {}
+    for pair in pairs:
+        name, equals, value = pair.partition("=")
+        if not equals:
+            raise ChromadockError(f"--fixed {pair}: write it as name=value")
+        fixed[name] = value
+    check_names(fixed)
+    return fixed
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--scenes", choices=("variety", "old"), default="variety")
+    parser.add_argument("--method", choices=METHODS, default=DEFAULT_METHOD)
+    parser.add_argument("--frames", type=int, help="a distance")
+    parser.add_argument("--no-dock", type=int, metavar="N", help="scenes without a dock")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--half", choices=[h.value for h in Half], default=Half.DEVELOP.value)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--distances", nargs="*", help="metres, of the original dock")
+    parser.add_argument("--fixed", nargs="*", default=(), metavar="FACTOR=VALUE")
+    parser.add_argument("--photographs", nargs="*", type=Path, default=(), metavar="FOLDER")
+    parser.add_argument("--looks", type=int, metavar="N", help="at most so many photographs")
+    parser.add_argument("--save", type=Path, metavar="FOLDER", help="pictures of what went wrong")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="one line a scene")
+    return parser.parse_args()
 
 
 if __name__ == "__main__":

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
 from chromadock.look import Found
+from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.pose import Estimate
-from chromadock.track.attitude import R_BODY_CAMERA_FORWARD, Attitude, expected
+from chromadock.track.attitude import Attitude, expected, expected_if_told
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
 from chromadock.track.motion import POSE
@@ -53,19 +54,18 @@ MAX_PRIORS = 2
 MAX_CANDIDATES = 3
 """Docks that are not trusted yet: a true one besides two of clutter."""
 
-R_LEVEL = np.eye(3)
-"""Of a dock that hangs level and faces the approach."""
-
 _LONGEST_ATTITUDE_GAP_S = 0.5  # a mean rate over a longer time is no rate
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class Plan:
     """How to look at the next frame: see ``look.Look``."""
 
     priors: tuple[Estimate, ...] = ()
     everywhere: bool = True
     incomplete: bool = False
+    R_expected: NDArray[np.float64] | None = None
+    R_covariance: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -85,23 +85,15 @@ class Tracker:
     ----------
     dock
         Its markers.
-    R_body_camera
-        (3, 3) extrinsics: the camera's axes in the vehicle's body (FRD); a camera that looks
-        ahead unless given.
-    R_level_dock
-        (3, 3) how the dock hangs at rest: its axes in those of a level dock that faces the
-        approach; the identity for one that does.
+    mounting
+        How the camera sits in the vehicle and how the dock hangs; None for a camera that looks
+        ahead and a dock that hangs level and faces the approach.
     """
 
-    def __init__(
-        self,
-        dock: DockGeometry,
-        R_body_camera: ArrayLike = R_BODY_CAMERA_FORWARD,
-        R_level_dock: ArrayLike = R_LEVEL,
-    ) -> None:
+    def __init__(self, dock: DockGeometry, mounting: Mounting | None = None) -> None:
         self._dock = dock
-        self._R_body_camera = np.asarray(R_body_camera, np.float64)
-        self._R_level_dock = np.asarray(R_level_dock, np.float64)
+        self._told = mounting
+        self._mounting = mounting_or_default(mounting)
         self._reset()
 
     def _reset(self) -> None:
@@ -116,16 +108,18 @@ class Tracker:
         self._attitude: tuple[float, Attitude] | None = None
         self._faced_s = -np.inf
 
-    def plan(self, time_s: float) -> Plan:
-        """How to look at a frame of ``time_s``; it changes nothing.
+    def plan(self, time_s: float, attitude: Attitude | None = None) -> Plan:
+        """How to look at a frame of ``time_s``, taken at that attitude; it changes nothing.
 
         Evidence for another dock counts only as seen without any expectation, so each look is
         either about the priors or everywhere, never both.
         """
         locked = self._kept(time_s)
+        R_expected, R_covariance = expected_if_told(attitude, self._told)
         if locked is None or self._full_is_due(locked, time_s):
             partly = locked is None or not locked.whole
-            return Plan(incomplete=partly and self._incomplete_is_due(time_s))
+            incomplete = partly and self._incomplete_is_due(time_s)
+            return Plan((), True, incomplete, R_expected, R_covariance)
         bank = locked.bank.after(max(time_s - locked.time_s, 0.0))
         likeliest = sorted(bank.hypotheses, key=lambda h: -h.weight)[:MAX_PRIORS]
         priors = tuple(
@@ -138,7 +132,7 @@ class Tracker:
             )
             for h in likeliest
         )
-        return Plan(priors, everywhere=False)
+        return Plan(priors, False, False, R_expected, R_covariance)
 
     def update(
         self,
@@ -223,7 +217,7 @@ class Tracker:
                 bank = bank.turning(turn_rate)
             bank = bank.after(elapsed_s)
             share = min(1.0, (time_s - self._faced_s) / FACING_CORRELATION_S)
-            R, covariance = expected(attitude, self._R_body_camera, self._R_level_dock)
+            R, covariance = expected(attitude, self._mounting)
             bank = bank.facing(R, covariance / share)
             self._faced_s = time_s
             locked = replace(locked, bank=bank, time_s=time_s)
@@ -235,7 +229,7 @@ class Tracker:
         if attitude is None or self._attitude is None:
             return None
         earlier_s, earlier = self._attitude
-        turn = attitude.turn_since(earlier, self._R_body_camera)
+        turn = attitude.turn_since(earlier, self._mounting.R_body_camera)
         if turn is None or time_s - earlier_s > _LONGEST_ATTITUDE_GAP_S:
             return None
         return np.asarray(turn / (time_s - earlier_s))

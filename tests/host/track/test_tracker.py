@@ -189,7 +189,8 @@ def test_a_marker_that_goes_out_does_not_lose_the_dock(run: Run) -> None:
 
 
 def test_while_a_dock_is_tracked_the_frame_is_searched_about_it(run: Run) -> None:
-    assert run.tracker.plan(0.0) == Plan(incomplete=True)
+    first = run.tracker.plan(0.0)
+    assert first.everywhere and first.incomplete and not first.priors
     run.frames(1.0, run.dock)
     plans: list[Plan] = []
     run.frames(5.0, lambda time_s, plan: (plans.append(plan), run.dock(time_s, plan))[1])
@@ -327,6 +328,12 @@ def test_motion_and_the_heading_tell_the_two_poses_apart(record_property: Any) -
 def test_an_attitude_that_is_no_number_is_refused(angles: tuple[float, float, float]) -> None:
     with pytest.raises(ChromadockError, match="radians"):
         Attitude(*angles)
+
+
+def test_an_attitude_in_degrees_is_refused() -> None:
+    with pytest.raises(ChromadockError, match="radians, not degrees"):
+        Attitude(2.0, -12.0)
+    assert Attitude(0.0, 0.0, 400.0).yaw_rad == 400.0  # a yaw may be counted on
 
 
 @given(

@@ -63,6 +63,11 @@ class DockGeometry:
         if fault:
             raise ChromadockError(f"{self.source}: {fault}")
 
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """(3,) the markers' centroid, metres, dock frame: about it the pose is best known."""
+        return np.asarray(self.points.mean(axis=0), np.float64)
+
     @classmethod
     def default(cls) -> DockGeometry:
         """The original dock: a rectangle of 0.890 m x 0.127 m, named by its corners."""

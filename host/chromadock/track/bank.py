@@ -68,6 +68,10 @@ class Bank:
             [_Branch(met(p.R, p.t, p.covariance), -p.chi_square / 2, False) for p in sight.poses]
         )
 
+    def about(self, origin: Floats) -> Bank:
+        """The same by a dock frame with its origin at ``origin`` (3,), metres, dock frame."""
+        return Bank(tuple(replace(h, state=h.state.about(origin)) for h in self.hypotheses))
+
     def after(self, elapsed_s: float) -> Bank:
         """The same ``elapsed_s`` >= 0 later, nothing seen meanwhile."""
         return Bank(tuple(replace(h, state=h.state.after(elapsed_s)) for h in self.hypotheses))

@@ -8,11 +8,13 @@ along with its attitude, so what bearings tell of the turn holds for the attitud
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from chromadock.pose import lever
 
 Floats = NDArray[np.float64]
 
@@ -73,6 +75,17 @@ class State:
         covariance[POSE, 6:] = covariance[6:, POSE] = 0.0
         covariance[POSE, POSE] = pose_covariance
         return State(R, t, self.velocity, self.turn_rate, covariance)
+
+    def about(self, origin: Floats) -> State:
+        """The same dock by a frame with its origin at ``origin`` (3,), metres, dock frame.
+
+        As a rigid body that stands it moves everywhere alike: only place and its errors change.
+        """
+        arm = self.R @ origin
+        J = np.eye(12)
+        J[POSE, POSE] = lever(arm)
+        covariance = J @ self.covariance @ J.T
+        return replace(self, t=self.t + arm, covariance=(covariance + covariance.T) / 2)
 
     def after(self, elapsed_s: float) -> State:
         """The state ``elapsed_s`` >= 0 later, nothing seen meanwhile."""

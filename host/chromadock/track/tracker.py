@@ -81,6 +81,10 @@ class _Locked:
 class Tracker:
     """Follows one dock; time is what its caller says it is.
 
+    The filter's own dock frame has its origin at the markers' centroid, about which errors of
+    place and attitude are about independent, so that it does not matter where the dock's own
+    origin lies; whatever comes in or goes out is of the dock's own frame.
+
     Parameters
     ----------
     dock
@@ -91,7 +95,8 @@ class Tracker:
     """
 
     def __init__(self, dock: DockGeometry, mounting: Mounting | None = None) -> None:
-        self._dock = dock
+        self._centre = dock.centre
+        self._dock = DockGeometry(dock.names, dock.points - dock.centre, dock.source)
         self._told = mounting
         self._mounting = mounting_or_default(mounting)
         self._reset()
@@ -120,7 +125,7 @@ class Tracker:
             partly = locked is None or not locked.whole
             incomplete = partly and self._incomplete_is_due(time_s)
             return Plan((), True, incomplete, R_expected, R_covariance)
-        bank = locked.bank.after(max(time_s - locked.time_s, 0.0))
+        bank = locked.bank.after(max(time_s - locked.time_s, 0.0)).about(-self._centre)
         likeliest = sorted(bank.hypotheses, key=lambda h: -h.weight)[:MAX_PRIORS]
         priors = tuple(
             Estimate(
@@ -182,7 +187,7 @@ class Tracker:
         )
         if locked is None or state not in ("tracking", "recently_lost"):
             return Track(state, time_s, age_s=age_s)
-        bank = locked.bank.after(time_s - locked.time_s)
+        bank = locked.bank.after(time_s - locked.time_s).about(-self._centre)
         return Track.following(state, time_s, bank.hypotheses, time_s - locked.measured_s)
 
     def _kept(self, time_s: float) -> _Locked | None:
@@ -245,7 +250,8 @@ class Tracker:
         if not plan.everywhere and (found.evidence or 0.0) < KEEP_EVIDENCE:
             return None
         self._last_markers = found.markers
-        return Sight.of(found.markers, found.estimates, self._dock, camera)
+        poses = [pose.about(self._centre) for pose in found.estimates]
+        return Sight.of(found.markers, poses, self._dock, camera)
 
     def _followed(self, sight: Sight, evidence: float, time_s: float, plan: Plan) -> bool:
         """Whether the locked dock was measured.

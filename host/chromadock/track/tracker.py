@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,26 +11,17 @@ from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
 from chromadock.look import Found
 from chromadock.mounting import Mounting, mounting_or_default
-from chromadock.pose import Estimate
 from chromadock.track.attitude import Attitude, expected, expected_if_told
-from chromadock.track.bank import Bank
 from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
-from chromadock.track.motion import POSE
+from chromadock.track.memory import Locked, Memory
+from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.result import Track
 from chromadock.track.sight import Sight
-from chromadock.track.states import KEPT_S, TRACKING_S, state_of
+from chromadock.track.states import TRACKING_S
 
 KEEP_EVIDENCE = 2.5
 """Decades, of markers where the track has them: specks there would draw it away, and a frame
 missed costs nothing."""
-
-FULL_SEARCH_S = 0.5
-"""While a dock is tracked the whole frame is searched this often: a wrong lock is left within four
-seconds, and the search costs little on the average."""
-
-INCOMPLETE_SEARCH_S = 0.25
-"""Without a whole dock in sight one with a marker out is searched for this often: it costs as much
-as a whole dock's search for each marker."""
 
 CORRELATION_S = 0.2
 """Frames closer than this share their errors, by the same pixels under a marker and the same
@@ -48,34 +39,10 @@ RESTART_S = 1.0
 """A frame older than the newest by more is the start of another recording: the track begins anew.
 Less is a frame that comes late, which is not used."""
 
-MAX_PRIORS = 2
-"""Poses about which a frame is searched: each costs time."""
-
 MAX_CANDIDATES = 3
 """Docks that are not trusted yet: a true one besides two of clutter."""
 
 _LONGEST_ATTITUDE_GAP_S = 0.5  # a mean rate over a longer time is no rate
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Plan:
-    """How to look at the next frame: see ``look.Look``."""
-
-    priors: tuple[Estimate, ...] = ()
-    everywhere: bool = True
-    incomplete: bool = False
-    R_expected: NDArray[np.float64] | None = None
-    R_covariance: NDArray[np.float64] | None = None
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Locked:
-    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not."""
-
-    bank: Bank
-    time_s: float
-    measured_s: float
-    whole: bool
 
 
 class Tracker:
@@ -99,19 +66,7 @@ class Tracker:
         self._dock = DockGeometry(dock.names, dock.points - dock.centre, dock.source)
         self._told = mounting
         self._mounting = mounting_or_default(mounting)
-        self._reset()
-
-    def _reset(self) -> None:
-        self._time_s: float | None = None
-        self._locked: _Locked | None = None
-        self._candidates: list[Candidate] = []
-        self._last_seen_s: float | None = None
-        self._last_full_s = -np.inf
-        self._last_was_full = False
-        self._last_incomplete_s = -np.inf
-        self._last_markers: dict[str, tuple[float, float]] | None = None
-        self._attitude: tuple[float, Attitude] | None = None
-        self._faced_s = -np.inf
+        self._memory = Memory()
 
     def plan(self, time_s: float, attitude: Attitude | None = None) -> Plan:
         """How to look at a frame of ``time_s``, taken at that attitude; it changes nothing.
@@ -119,25 +74,13 @@ class Tracker:
         Evidence for another dock counts only as seen without any expectation, so each look is
         either about the priors or everywhere, never both.
         """
-        locked = self._kept(time_s)
-        R_expected, R_covariance = expected_if_told(attitude, self._told)
-        if locked is None or self._full_is_due(locked, time_s):
-            partly = locked is None or not locked.whole
-            incomplete = partly and self._incomplete_is_due(time_s)
-            return Plan((), True, incomplete, R_expected, R_covariance)
-        bank = locked.bank.after(max(time_s - locked.time_s, 0.0)).about(-self._centre)
-        likeliest = sorted(bank.hypotheses, key=lambda h: -h.weight)[:MAX_PRIORS]
-        priors = tuple(
-            Estimate(
-                h.state.R,
-                h.state.t,
-                0.0,
-                0.0,
-                np.asarray(np.linalg.inv(h.state.covariance[POSE, POSE]), np.float64),
-            )
-            for h in likeliest
-        )
-        return Plan(priors, False, False, R_expected, R_covariance)
+        memory = self._memory
+        locked = memory.kept(time_s)
+        R, covariance = expected_if_told(attitude, self._told)
+        if locked is None or full_is_due(memory, time_s):
+            return Plan((), True, incomplete_is_due(memory, time_s), R, covariance)
+        bank = locked.bank.after(max(time_s - locked.time_s, 0.0))
+        return Plan(priors(bank.about(-self._centre)), False, False, R, covariance)
 
     def update(
         self,
@@ -150,149 +93,142 @@ class Tracker:
         """Take in what was found in the frame of ``time_s`` by a plan made for it.
 
         A frame not newer than the newest says nothing new and is not used; one older by more
-        than RESTART_S starts anew.
+        than RESTART_S starts anew.  Frames come from one thread at a time.
         """
-        if self._time_s is not None and time_s <= self._time_s:
-            if time_s > self._time_s - RESTART_S:
+        memory = self._memory
+        if memory.time_s is not None and time_s <= memory.time_s:
+            if time_s > memory.time_s - RESTART_S:
                 return self.at(time_s)
-            self._reset()
-        self._time_s = time_s
-        self._last_was_full = plan.everywhere
-        if plan.everywhere:
-            self._last_full_s = time_s
-        if plan.incomplete:
-            self._last_incomplete_s = time_s
-        self._run_on(time_s, plan, attitude)
-        sight = self._sight(plan, found, camera)
+            memory = Memory()
+        memory = self._run_on(_looked(memory, time_s, plan), time_s, attitude)
+        sight = self._sight(memory, plan, found, camera)
         if sight is not None:
+            memory = replace(memory, last_markers=found.markers)
             evidence = found.evidence or 0.0
-            followed = self._followed(sight, evidence, time_s, plan)
-            if not followed and plan.everywhere:
-                self._propose(sight, evidence, time_s)
+            followed = _followed(memory, sight, evidence, time_s, plan)
+            if followed is not None:
+                memory = followed
+            elif plan.everywhere:
+                memory = _proposed(memory, sight, evidence, time_s)
+        # Published at once, when all is done: see ``at``.
+        self._memory = memory
         return self.at(time_s)
 
     def at(self, time_s: float) -> Track:
         """The track run on to any time, say from a frame's to now: latency taken out.
 
-        At a time before the newest frame's it is that of the newest.
+        At a time before the newest frame's it is that of the newest.  Any thread may ask while
+        another is in ``update``: the answer is wholly by the frames before that one or by it too.
         """
-        time_s = max(time_s, -np.inf if self._time_s is None else self._time_s)
-        seen = self._last_seen_s
-        age_s = None if seen is None else time_s - seen
-        locked = self._locked
-        state = state_of(
-            None if locked is None else time_s - locked.measured_s,
-            any(not c.given_up(time_s) for c in self._candidates),
-            seen is not None,
-        )
-        if locked is None or state not in ("tracking", "recently_lost"):
-            return Track(state, time_s, age_s=age_s)
-        bank = locked.bank.after(time_s - locked.time_s).about(-self._centre)
-        return Track.following(state, time_s, bank.hypotheses, time_s - locked.measured_s)
+        return self._memory.track(time_s, -self._centre)
 
-    def _kept(self, time_s: float) -> _Locked | None:
-        """The locked dock, unless it was last measured too long before."""
-        locked = self._locked
-        return None if locked is None or time_s - locked.measured_s > KEPT_S else locked
-
-    def _full_is_due(self, locked: _Locked, time_s: float) -> bool:
-        """Not twice in a row, that a dock with a marker out is looked for in between."""
-        if self._last_was_full:
-            return False
-        unsure = bool(self._candidates) or time_s - locked.measured_s > TRACKING_S
-        return unsure or time_s - self._last_full_s >= FULL_SEARCH_S
-
-    def _incomplete_is_due(self, time_s: float) -> bool:
-        """Now and then, and at every frame that may confirm what there is."""
-        return bool(self._candidates) or time_s - self._last_incomplete_s >= INCOMPLETE_SEARCH_S
-
-    def _run_on(self, time_s: float, plan: Plan, attitude: Attitude | None) -> None:
-        """Both kinds of docks to this frame's time, with what the vehicle knows."""
-        self._candidates = [
-            c.looked_for() if plan.everywhere else c
-            for c in self._candidates
-            if not c.given_up(time_s)
-        ]
-        locked = self._kept(time_s)
+    def _run_on(self, memory: Memory, time_s: float, attitude: Attitude | None) -> Memory:
+        """The locked dock to this frame's time, with what the vehicle knows."""
+        locked, faced_s = memory.kept(time_s), memory.faced_s
         if locked is not None:
             bank = locked.bank
-            elapsed_s = time_s - locked.time_s
-            turn_rate = self._turn_rate(time_s, attitude)
+            turn_rate = self._turn_rate(memory, time_s, attitude)
             if turn_rate is not None:
                 bank = bank.turning(turn_rate)
-            bank = bank.after(elapsed_s)
-            share = min(1.0, (time_s - self._faced_s) / FACING_CORRELATION_S)
+            bank = bank.after(time_s - locked.time_s)
+            share = min(1.0, (time_s - faced_s) / FACING_CORRELATION_S)
             R, covariance = expected(attitude, self._mounting)
-            bank = bank.facing(R, covariance / share)
-            self._faced_s = time_s
+            bank, faced_s = bank.facing(R, covariance / share), time_s
             locked = replace(locked, bank=bank, time_s=time_s)
-        self._locked = locked
-        self._attitude = None if attitude is None else (time_s, attitude)
+        told = None if attitude is None else (time_s, attitude)
+        return replace(memory, locked=locked, attitude=told, faced_s=faced_s)
 
-    def _turn_rate(self, time_s: float, attitude: Attitude | None) -> NDArray[np.float64] | None:
+    def _turn_rate(
+        self, memory: Memory, time_s: float, attitude: Attitude | None
+    ) -> NDArray[np.float64] | None:
         """(3,) rad/s: of the camera since the last frame."""
-        if attitude is None or self._attitude is None:
+        if attitude is None or memory.attitude is None:
             return None
-        earlier_s, earlier = self._attitude
+        earlier_s, earlier = memory.attitude
         turn = attitude.turn_since(earlier, self._mounting.R_body_camera)
         if turn is None or time_s - earlier_s > _LONGEST_ATTITUDE_GAP_S:
             return None
         return np.asarray(turn / (time_s - earlier_s))
 
-    def _sight(self, plan: Plan, found: Found, camera: CameraModel) -> Sight | None:
+    def _sight(self, memory: Memory, plan: Plan, found: Found, camera: CameraModel) -> Sight | None:
         """The frame's markers; none of a picture that has been seen already.
 
         Noise alone moves a marker by a thousandth of a pixel: places that are the same to the
         last bit are the same picture again, from a camera or a driver that hangs.
         """
-        if found.markers is None or not found.estimates or found.markers == self._last_markers:
+        if found.markers is None or not found.estimates or found.markers == memory.last_markers:
             return None
         if not plan.everywhere and (found.evidence or 0.0) < KEEP_EVIDENCE:
             return None
-        self._last_markers = found.markers
         poses = [pose.about(self._centre) for pose in found.estimates]
         return Sight.of(found.markers, poses, self._dock, camera)
 
-    def _followed(self, sight: Sight, evidence: float, time_s: float, plan: Plan) -> bool:
-        """Whether the locked dock was measured.
 
-        One out of sight may be anywhere soon, and three markers of four leave open where the
-        fourth would be: what is found then must speak for itself.
-        """
-        locked = self._locked
-        if locked is None:
-            return False
-        unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
-        if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
-            return False
-        bank = locked.bank.seen(sight.worth(_share(sight, time_s - locked.measured_s)))
-        if bank is None:
-            return False
-        self._locked = _Locked(bank.doubting(sight), time_s, time_s, sight.whole)
-        self._last_seen_s = time_s
-        if plan.everywhere:  # what stands out most is this dock: others are none
-            self._candidates.clear()
-        return True
+def _looked(memory: Memory, time_s: float, plan: Plan) -> Memory:
+    """After a look by a plan, whatever it found."""
+    return replace(
+        memory,
+        time_s=time_s,
+        candidates=tuple(
+            c.looked_for() if plan.everywhere else c
+            for c in memory.candidates
+            if not c.given_up(time_s)
+        ),
+        last_was_full=plan.everywhere,
+        last_full_s=time_s if plan.everywhere else memory.last_full_s,
+        last_incomplete_s=time_s if plan.incomplete else memory.last_incomplete_s,
+    )
 
-    def _propose(self, sight: Sight, evidence: float, time_s: float) -> None:
-        """A dock where none is locked: a new candidate, or one more frame of one; or the lock."""
-        for i, candidate in enumerate(self._candidates):
-            new = sight.worth(_share(sight, time_s - candidate.time_s))
-            after = candidate.seen(new, evidence, time_s)
-            if after is not None:
-                self._candidates[i] = after
-                break
-        else:
-            after = Candidate.of(sight, evidence, time_s)
-            self._candidates.append(after)
-            self._candidates = self._candidates[-MAX_CANDIDATES:]
-        locked = self._locked
-        rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
-        if after.locked(rival):
-            self._locked = _Locked(after.bank, time_s, time_s, sight.whole)
-            self._last_seen_s = time_s
-            self._faced_s = -np.inf
-            self._candidates.clear()
+
+def _followed(
+    memory: Memory, sight: Sight, evidence: float, time_s: float, plan: Plan
+) -> Memory | None:
+    """After the locked dock was measured; None where it was not.
+
+    One out of sight may be anywhere soon, and three markers of four leave open where the
+    fourth would be: what is found then must speak for itself.
+    """
+    locked = memory.locked
+    if locked is None:
+        return None
+    unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
+    if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
+        return None
+    bank = locked.bank.seen(sight.worth(_share(sight, time_s - locked.measured_s)))
+    if bank is None:
+        return None
+    return replace(
+        memory,
+        locked=Locked(bank.doubting(sight), time_s, time_s, sight.whole),
+        last_seen_s=time_s,
+        # What stands out most is this dock: others are none.
+        candidates=() if plan.everywhere else memory.candidates,
+    )
+
+
+def _proposed(memory: Memory, sight: Sight, evidence: float, time_s: float) -> Memory:
+    """With a dock where none is locked: a new candidate, one more frame of one, or the lock."""
+    candidates = list(memory.candidates)
+    for i, candidate in enumerate(candidates):
+        new = sight.worth(_share(sight, time_s - candidate.time_s))
+        after = candidate.seen(new, evidence, time_s)
+        if after is not None:
+            candidates[i] = after
+            break
+    else:
+        after = Candidate.of(sight, evidence, time_s)
+        candidates = [*candidates, after][-MAX_CANDIDATES:]
+    locked = memory.locked
+    rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
+    if not after.locked(rival):
+        return replace(memory, candidates=tuple(candidates))
+    return replace(
+        memory,
+        locked=Locked(after.bank, time_s, time_s, sight.whole),
+        last_seen_s=time_s,
+        faced_s=-np.inf,
+        candidates=(),
+    )
 
 
 def _share(sight: Sight, elapsed_s: float) -> float:

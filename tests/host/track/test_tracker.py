@@ -23,8 +23,9 @@ from chromadock.track.candidate import (
     PATIENT_FRAMES,
     PATIENT_SPAN_S,
 )
+from chromadock.track.plan import FULL_SEARCH_S, MAX_PRIORS, Plan
 from chromadock.track.states import KEPT_S, STATES, TRACKING_S, state_of
-from chromadock.track.tracker import FULL_SEARCH_S, KEEP_EVIDENCE, MAX_PRIORS, Plan
+from chromadock.track.tracker import KEEP_EVIDENCE
 
 HZ = 10
 Seen = Callable[[float, Plan], Found]

@@ -100,9 +100,10 @@ class Bank:
         """After the vehicle told how it should see the dock turned: see ``with_attitude``."""
         return self._told(lambda state: with_attitude(state, R_expected, covariance))
 
-    def turning(self, turn_rate: Floats) -> Bank:
-        """After the vehicle told at which rate (3,) rad/s its camera turns."""
-        return self._told(lambda state: with_turn_rate(state, turn_rate))
+    def turning(self, turn_rate: Floats, variance: float) -> Bank:
+        """After the vehicle told at which rate (3,) rad/s its camera turns: see
+        ``with_turn_rate``."""
+        return self._told(lambda state: with_turn_rate(state, turn_rate, variance))
 
     def _told(self, fuse: Callable[[State], Fused]) -> Bank:
         return _bank(

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.track.attitude import Attitude
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import Candidate
 from chromadock.track.result import Track
 from chromadock.track.states import KEPT_S, state_of
+from chromadock.track.telemetry import UNHEARD, Telemetry
 
 Floats = NDArray[np.float64]
 
@@ -34,8 +34,8 @@ class Memory:
 
     ``time_s``: of the newest frame; None before the first.  ``last_...``: of the last frame that
     saw the locked dock, was searched whole, was searched for a dock with a marker out;
-    ``last_markers``: of the last frame that showed some.  ``attitude``: the last, and when.
-    ``faced_s``: when the dock's expected attitude was last taken in.
+    ``last_markers``: of the last frame that showed some.  ``telemetry``: what the attitudes come
+    to; ``faced_s``: when the dock's expected attitude was last taken in.
     """
 
     time_s: float | None = None
@@ -46,7 +46,7 @@ class Memory:
     last_was_full: bool = False
     last_incomplete_s: float = -math.inf
     last_markers: dict[str, tuple[float, float]] | None = None
-    attitude: tuple[float, Attitude] | None = None
+    telemetry: Telemetry = UNHEARD
     faced_s: float = -math.inf
 
     def kept(self, time_s: float) -> Locked | None:

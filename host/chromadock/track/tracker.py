@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
@@ -14,6 +13,7 @@ from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.track.attitude import Attitude, expected, expected_if_told
 from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
 from chromadock.track.memory import Locked, Memory
+from chromadock.track.motion import TURNING
 from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.result import Track
 from chromadock.track.sight import Sight
@@ -41,8 +41,6 @@ Less is a frame that comes late, which is not used."""
 
 MAX_CANDIDATES = 3
 """Docks that are not trusted yet: a true one besides two of clutter."""
-
-_LONGEST_ATTITUDE_GAP_S = 0.5  # a mean rate over a longer time is no rate
 
 
 class Tracker:
@@ -124,31 +122,23 @@ class Tracker:
 
     def _run_on(self, memory: Memory, time_s: float, attitude: Attitude | None) -> Memory:
         """The locked dock to this frame's time, with what the vehicle knows."""
+        telemetry = memory.telemetry.heard(time_s, attitude, self._mounting.R_body_camera)
         locked, faced_s = memory.kept(time_s), memory.faced_s
         if locked is not None:
-            bank = locked.bank
-            turn_rate = self._turn_rate(memory, time_s, attitude)
-            if turn_rate is not None:
-                bank = bank.turning(turn_rate)
-            bank = bank.after(time_s - locked.time_s)
-            share = min(1.0, (time_s - faced_s) / FACING_CORRELATION_S)
-            R, covariance = expected(attitude, self._mounting)
-            bank, faced_s = bank.facing(R, covariance / share), time_s
+            bank, elapsed_s = locked.bank, time_s - locked.time_s
+            turn = telemetry.turn
+            if turn is not None:
+                # Of the mean over a longer time than the last frame's the rate has gone astray.
+                astray = TURNING**2 * max(turn.over_s - elapsed_s, 0.0) / 3
+                bank = bank.turning(turn.rate, turn.variance + astray)
+            bank = bank.after(elapsed_s)
+            # An attitude that is not new is a tenth of a second old, and says nothing new.
+            if telemetry.fresh is not None or telemetry.silent(time_s):
+                share = min(1.0, (time_s - faced_s) / FACING_CORRELATION_S)
+                R, covariance = expected(telemetry.fresh, self._mounting)
+                bank, faced_s = bank.facing(R, covariance / share), time_s
             locked = replace(locked, bank=bank, time_s=time_s)
-        told = None if attitude is None else (time_s, attitude)
-        return replace(memory, locked=locked, attitude=told, faced_s=faced_s)
-
-    def _turn_rate(
-        self, memory: Memory, time_s: float, attitude: Attitude | None
-    ) -> NDArray[np.float64] | None:
-        """(3,) rad/s: of the camera since the last frame."""
-        if attitude is None or memory.attitude is None:
-            return None
-        earlier_s, earlier = memory.attitude
-        turn = attitude.turn_since(earlier, self._mounting.R_body_camera)
-        if turn is None or time_s - earlier_s > _LONGEST_ATTITUDE_GAP_S:
-            return None
-        return np.asarray(turn / (time_s - earlier_s))
+        return replace(memory, locked=locked, telemetry=telemetry, faced_s=faced_s)
 
     def _sight(self, memory: Memory, plan: Plan, found: Found, camera: CameraModel) -> Sight | None:
         """The frame's markers; none of a picture that has been seen already.

@@ -113,8 +113,10 @@ def test_an_attitude_turns_the_dock_and_what_is_correlated() -> None:
 
 def test_a_rate_of_turn_is_taken_in() -> None:
     begun = met(*approach(0.0), np.eye(6) * 1e-4)
-    fused = with_turn_rate(begun, np.array([0.0, 0.3, 0.0]))
+    fused = with_turn_rate(begun, np.array([0.0, 0.3, 0.0]), 0.02**2)
     assert fused.state.turn_rate == pytest.approx([0.0, 0.3, 0.0], abs=0.01)
+    vague = with_turn_rate(begun, np.array([0.0, 0.3, 0.0]), 0.3**2)
+    assert vague.state.turn_rate == pytest.approx([0.0, 0.15, 0.0], abs=0.01)
 
 
 def test_the_errors_of_markers_have_a_floor() -> None:

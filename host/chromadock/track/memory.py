@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import Candidate
+from chromadock.track.manoeuvre import SELDOM, later
 from chromadock.track.result import Track
 from chromadock.track.states import KEPT_S, state_of
 from chromadock.track.telemetry import UNHEARD, Telemetry
@@ -19,12 +20,20 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Locked:
-    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not."""
+    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not.
+
+    ``swift`` 0..1: probability that the vehicle manoeuvres.
+    """
 
     bank: Bank
     time_s: float
     measured_s: float
     whole: bool
+    swift: float = SELDOM
+
+    def after(self, elapsed_s: float) -> Bank:
+        """The bank ``elapsed_s`` after ``time_s``, nothing seen meanwhile."""
+        return self.bank.after(elapsed_s, later(self.swift, elapsed_s))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -67,5 +76,5 @@ class Memory:
         )
         if locked is None or state not in ("tracking", "recently_lost"):
             return Track(state, time_s, age_s=age_s)
-        bank = locked.bank.after(time_s - locked.time_s).about(origin)
+        bank = locked.after(time_s - locked.time_s).about(origin)
         return Track.following(state, time_s, bank.hypotheses, time_s - locked.measured_s)

@@ -11,7 +11,6 @@ from chromadock.pose import Estimate
 from chromadock.track.bank import Bank
 from chromadock.track.memory import Memory
 from chromadock.track.motion import POSE
-from chromadock.track.states import TRACKING_S
 
 Floats = NDArray[np.float64]
 
@@ -41,15 +40,15 @@ class Plan:
 def full_is_due(memory: Memory, time_s: float) -> bool:
     """Whether the whole frame of ``time_s`` is to be searched.
 
-    While a dock is tracked not twice in a row, that one with a marker out is looked for in
-    between.
+    Now and then; and as soon as the dock was not where it was expected, but not twice in a row,
+    that one with a marker out is looked for in between.
     """
     locked = memory.kept(time_s)
     if locked is None:
         return True
     if memory.last_was_full:
         return False
-    unsure = bool(memory.candidates) or time_s - locked.measured_s > TRACKING_S
+    unsure = bool(memory.candidates) or locked.time_s > locked.measured_s
     return unsure or time_s - memory.last_full_s >= FULL_SEARCH_S
 
 

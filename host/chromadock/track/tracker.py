@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,9 +12,11 @@ from chromadock.dock import DockGeometry
 from chromadock.look import Found
 from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.track.attitude import Attitude, expected, expected_if_told
+from chromadock.track.bank import Bank
 from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
+from chromadock.track.manoeuvre import decided, later
 from chromadock.track.memory import Locked, Memory
-from chromadock.track.motion import TURNING
+from chromadock.track.motion import turning_of
 from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.result import Track
 from chromadock.track.sight import Sight
@@ -77,7 +80,7 @@ class Tracker:
         R, covariance = expected_if_told(attitude, self._told)
         if locked is None or full_is_due(memory, time_s):
             return Plan((), True, incomplete_is_due(memory, time_s), R, covariance)
-        bank = locked.bank.after(max(time_s - locked.time_s, 0.0))
+        bank = locked.after(max(time_s - locked.time_s, 0.0))
         return Plan(priors(bank.about(-self._centre)), False, False, R, covariance)
 
     def update(
@@ -98,16 +101,18 @@ class Tracker:
             if time_s > memory.time_s - RESTART_S:
                 return self.at(time_s)
             memory = Memory()
-        memory = self._run_on(_looked(memory, time_s, plan), time_s, attitude)
-        sight = self._sight(memory, plan, found, camera)
+        memory = _looked(memory, time_s, plan)
+        telemetry = memory.telemetry.heard(time_s, attitude, self._mounting.R_body_camera)
+        memory = replace(memory, telemetry=telemetry)
+        predicted = self._prediction(memory, time_s)
+        sight, after = self._sight(memory, plan, found, camera), None
+        evidence = found.evidence or 0.0
         if sight is not None:
             memory = replace(memory, last_markers=found.markers)
-            evidence = found.evidence or 0.0
-            followed = _followed(memory, sight, evidence, time_s, plan)
-            if followed is not None:
-                memory = followed
-            elif plan.everywhere:
-                memory = _proposed(memory, sight, evidence, time_s)
+            after = _followed(memory, predicted, sight, evidence, time_s, plan)
+        memory = after or _unseen(memory, predicted, time_s)
+        if sight is not None and after is None and plan.everywhere:
+            memory = _proposed(memory, sight, evidence, time_s)
         # Published at once, when all is done: see ``at``.
         self._memory = memory
         return self.at(time_s)
@@ -120,25 +125,31 @@ class Tracker:
         """
         return self._memory.track(time_s, -self._centre)
 
-    def _run_on(self, memory: Memory, time_s: float, attitude: Attitude | None) -> Memory:
-        """The locked dock to this frame's time, with what the vehicle knows."""
-        telemetry = memory.telemetry.heard(time_s, attitude, self._mounting.R_body_camera)
-        locked, faced_s = memory.kept(time_s), memory.faced_s
-        if locked is not None:
-            bank, elapsed_s = locked.bank, time_s - locked.time_s
-            turn = telemetry.turn
+    def _prediction(self, memory: Memory, time_s: float) -> Prediction | None:
+        """Of the locked dock at this frame's time, with what the vehicle knows; of one that has
+        manoeuvred since the last with a probability that is still open."""
+        locked, telemetry = memory.kept(time_s), memory.telemetry
+        if locked is None:
+            return None
+        elapsed_s = time_s - locked.time_s
+        # An attitude that is not new is some tenths of a second old, and says nothing new.
+        faced = telemetry.fresh is not None or telemetry.silent(time_s)
+        share = min(1.0, (time_s - memory.faced_s) / FACING_CORRELATION_S)
+        R, covariance = expected(telemetry.fresh, self._mounting)
+
+        def predicted(swift: float) -> Bank:
+            bank, turn = locked.bank, telemetry.turn
             if turn is not None:
-                # Of the mean over a longer time than the last frame's the rate has gone astray.
-                astray = TURNING**2 * max(turn.over_s - elapsed_s, 0.0) / 3
-                bank = bank.turning(turn.rate, turn.variance + astray)
-            bank = bank.after(elapsed_s)
-            # An attitude that is not new is a tenth of a second old, and says nothing new.
-            if telemetry.fresh is not None or telemetry.silent(time_s):
-                share = min(1.0, (time_s - faced_s) / FACING_CORRELATION_S)
-                R, covariance = expected(telemetry.fresh, self._mounting)
-                bank, faced_s = bank.facing(R, covariance / share), time_s
-            locked = replace(locked, bank=bank, time_s=time_s)
-        return replace(memory, locked=locked, telemetry=telemetry, faced_s=faced_s)
+                # From its value at the last frame to its mean since, and where that is of a longer
+                # time, to that: a Wiener process against its mean over a time.
+                per_s = turning_of(swift) ** 2 / 3
+                older = per_s * max(turn.over_s - elapsed_s, 0.0)
+                bank = bank.turning(turn.rate, turn.variance + older, per_s * elapsed_s)
+            bank = bank.after(elapsed_s, swift)
+            return bank.facing(R, covariance / share) if faced else bank
+
+        swift = later(locked.swift, elapsed_s)
+        return Prediction(locked, predicted, swift, time_s if faced else memory.faced_s)
 
     def _sight(self, memory: Memory, plan: Plan, found: Found, camera: CameraModel) -> Sight | None:
         """The frame's markers; none of a picture that has been seen already.
@@ -170,27 +181,56 @@ def _looked(memory: Memory, time_s: float, plan: Plan) -> Memory:
     )
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Prediction:
+    """``bank(p)``: at a frame's time, of a vehicle that manoeuvres with probability p; ``swift``:
+    that of this one; ``locked``: what it was made of; ``faced_s``: when the dock's expected
+    attitude was last taken in."""
+
+    locked: Locked
+    bank: Callable[[float], Bank]
+    swift: float
+    faced_s: float
+
+
+def _unseen(memory: Memory, predicted: Prediction | None, time_s: float) -> Memory:
+    """After a frame that did not show the locked dock."""
+    if predicted is None:
+        return replace(memory, locked=None)
+    bank = predicted.bank(predicted.swift)
+    locked = replace(predicted.locked, bank=bank, time_s=time_s, swift=predicted.swift)
+    return replace(memory, locked=locked, faced_s=predicted.faced_s)
+
+
 def _followed(
-    memory: Memory, sight: Sight, evidence: float, time_s: float, plan: Plan
+    memory: Memory,
+    predicted: Prediction | None,
+    sight: Sight,
+    evidence: float,
+    time_s: float,
+    plan: Plan,
 ) -> Memory | None:
     """After the locked dock was measured; None where it was not.
 
     One out of sight may be anywhere soon, and three markers of four leave open where the
     fourth would be: what is found then must speak for itself.
     """
-    locked = memory.locked
-    if locked is None:
+    if predicted is None:
         return None
+    locked = predicted.locked
     unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
     if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
         return None
-    bank = locked.bank.seen(sight.worth(_share(sight, time_s - locked.measured_s)))
-    if bank is None:
+    new = sight.worth(_share(sight, time_s - locked.measured_s))
+    after = decided(predicted.bank, new, predicted.swift)
+    if after is None:
         return None
+    bank, swift = after
     return replace(
         memory,
-        locked=Locked(bank.doubting(sight), time_s, time_s, sight.whole),
+        locked=Locked(bank.doubting(sight), time_s, time_s, sight.whole, swift),
         last_seen_s=time_s,
+        faced_s=predicted.faced_s,
         # What stands out most is this dock: others are none.
         candidates=() if plan.everywhere else memory.candidates,
     )

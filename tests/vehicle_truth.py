@@ -60,18 +60,21 @@ def telemetry(vehicle: Yawing, rate_hz: float, step_deg: float = 0.0) -> Telemet
 @dataclass(frozen=True)
 class Outcome:
     """Of the frames after the first two seconds, (N,) each: whether there was a pose; whether the
-    true one was in its 95% region; how far off it was, metres, then and PREDICTED_S later."""
+    true one was in its 95% region; how far off it was, metres; both of PREDICTED_S later."""
 
     tracked: np.ndarray
     covered: np.ndarray
     off_m: np.ndarray
+    predicted_covered: np.ndarray
     predicted_off_m: np.ndarray
 
 
-def off(pose: TrackedPose, truth: Pose) -> np.ndarray:
-    """(6,) of the truth from a tracked pose: metres, radians."""
+def judged(pose: TrackedPose, truth: Pose) -> tuple[bool, float]:
+    """Whether the truth is in a tracked pose's 95% region; metres that it is off."""
     turn = cv2.Rodrigues(truth[0] @ matrix_from_quaternion(pose.q_wxyz).T)[0].ravel()
-    return np.concatenate([truth[1] - np.array(pose.t), turn])
+    off = np.concatenate([truth[1] - np.array(pose.t), turn])
+    square = float(off @ np.linalg.solve(np.reshape(pose.covariance, (6, 6)), off))
+    return square < IN_95_PERCENT, float(np.linalg.norm(off[:3]))
 
 
 def followed(
@@ -79,7 +82,7 @@ def followed(
 ) -> Outcome:
     """A tracker on a vehicle; a search about priors finds the dock within their reach only."""
     tracker, rng = Tracker(DOCK), np.random.default_rng(seed)
-    rows: list[tuple[bool, bool, float, float]] = []
+    rows: list[tuple[bool, bool, float, bool, float]] = []
     for k in range(round(seconds * hz)):
         time_s = k / hz
         pose, plan = vehicle.pose(time_s), tracker.plan(time_s)
@@ -91,12 +94,9 @@ def followed(
             continue
         later = tracker.at(time_s + PREDICTED_S)
         if track.pose is None or later.pose is None:
-            rows.append((False, False, np.nan, np.nan))
+            rows.append((False, False, np.nan, False, np.nan))
             continue
-        now = off(track.pose, pose)
-        spread = np.reshape(track.pose.covariance, (6, 6))
-        then = off(later.pose, vehicle.pose(time_s + PREDICTED_S))
-        inside = float(now @ np.linalg.solve(spread, now)) < IN_95_PERCENT
-        rows.append((True, inside, *(float(np.linalg.norm(v[:3])) for v in (now, then))))
+        truth = vehicle.pose(time_s + PREDICTED_S)
+        rows.append((True, *judged(track.pose, pose), *judged(later.pose, truth)))
     columns = [np.array(column) for column in zip(*rows, strict=True)]
     return Outcome(*columns)

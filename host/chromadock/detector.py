@@ -22,10 +22,11 @@ from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.hue_search import GUESS_DECADES, HueSearch
 from chromadock.look import Found, Look, Method
+from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.paper.method import PaperMethod
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
-from chromadock.track.attitude import Attitude
+from chromadock.track.attitude import Attitude, expected_if_told
 from chromadock.track.result import Track
 from chromadock.track.tracker import Tracker
 
@@ -57,14 +58,15 @@ class Detector:
         One of ``MAPPINGS``; the dock must use the same.
     independent
         Treat each frame alone: no rolling mean of the marker colour, no track.
-    tracker
-        With extrinsics or a dock of your own; None takes ``Tracker(dock)`` with method
-        ``robust``, and none with others.
+    mounting
+        How the camera sits in the vehicle and how the dock hangs, for the search and the track;
+        None for an upright camera that looks ahead and a level dock that faces the approach.
 
     Raises
     ------
     ChromadockError
-        Where a name is unknown or the dock has a shape that the method cannot find.
+        Where a name is unknown, the dock has a shape that the method cannot find, or the
+        mounting is none.
     """
 
     def __init__(
@@ -74,7 +76,7 @@ class Detector:
         method: str = DEFAULT_METHOD,
         mapping: str = contract.DEFAULT_MAPPING_NAME,
         independent: bool = False,
-        tracker: Tracker | None = None,
+        mounting: Mounting | None = None,
     ) -> None:
         _check_name("method", method, METHODS)
         _check_name("mapping", mapping, MAPPINGS)
@@ -82,9 +84,11 @@ class Detector:
         self._mapping = mapping
         self._rolling = None if independent else RollingHue()
         self._method = _METHODS[method](dock)
+        mounting_or_default(mounting)  # refuses what is none
+        self._mounting = mounting
         self._tracker = None
         if method in _TRACKED and not independent:
-            self._tracker = tracker or Tracker(dock)
+            self._tracker = Tracker(dock, mounting)
         self._hues = HueSearch()
 
     @property
@@ -95,8 +99,9 @@ class Detector:
     def predicted(self, time_s: float) -> Track | None:
         """The track run on from the newest frame to a time after it, such as now.
 
-        A frame is processed some time after it was taken; this takes the delay out.  None
-        where nothing is tracked: ``independent``, or a method that cannot.
+        A frame is processed some time after it was taken; this takes the delay out.  Any thread
+        may ask, also while another is in ``process``: the answer is by the frames processed so
+        far.  None where nothing is tracked: ``independent``, or a method that cannot.
         """
         return None if self._tracker is None else self._tracker.at(time_s)
 
@@ -111,15 +116,21 @@ class Detector:
         time_s : when it was taken, seconds; any origin, monotonic.  The track does not use a
             frame that is not newer than the last, and starts anew when time goes back by more
             than a second.
-        attitude : the vehicle's when the frame was taken, where it is known, for the track.
+        attitude : the vehicle's when the frame was taken, where it is known: for the track, and
+            so that the search knows how the dock is turned.
 
         Raises
         ------
         ChromadockError
-            For another shape or type, a size that the camera is not calibrated for, or a time
-            that is not finite.
+            For another shape or type, a size that the camera is not calibrated for, a time that
+            is not finite, or an attitude that is none.
         """
         _check_frame(frame_bgr)
+        if attitude is not None and not isinstance(attitude, Attitude):
+            raise ChromadockError(
+                f"attitude is a {type(attitude).__name__}: give Attitude(roll_rad, pitch_rad, "
+                "yaw_rad)"
+            )
         if not math.isfinite(time_s):
             raise ChromadockError(f"time_s is {time_s}: give when the frame was taken, in seconds")
         camera = self._camera or _nominal(frame_bgr.shape[1], frame_bgr.shape[0])
@@ -137,9 +148,11 @@ class Detector:
         look = Look(frame_bgr, background, hue, camera)
         track = None
         if self._tracker is None:
+            R_expected, R_covariance = expected_if_told(attitude, self._mounting)
+            look = replace(look, R_expected=R_expected, R_covariance=R_covariance)
             found = self._method.find(look, watch)
         else:
-            plan = self._tracker.plan(time_s)
+            plan = self._tracker.plan(time_s, attitude)
             look = replace(
                 look,
                 hue=(hue + self._hues.offset) % contract.HUE_RANGE,
@@ -147,6 +160,8 @@ class Detector:
                 everywhere=plan.everywhere,
                 # At a guessed hue three markers would say too little.
                 incomplete=plan.incomplete and not self._hues.offset,
+                R_expected=plan.R_expected,
+                R_covariance=plan.R_covariance,
             )
             found = self._method.find(look, watch)
             guessed = self._hues.offset != 0 and not plan.priors

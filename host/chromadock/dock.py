@@ -7,6 +7,7 @@ an approaching vehicle, as that vehicle sees it; metres.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from importlib import resources
 from itertools import combinations
 from pathlib import Path
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from chromadock.errors import ChromadockError
+from chromadock.symmetry import Symmetry, symmetries
 from chromadock.toml_file import read_toml
 from chromadock.validation import place, shown
 
@@ -62,6 +64,20 @@ class DockGeometry:
         fault = _fault(self.names, points)
         if fault:
             raise ChromadockError(f"{self.source}: {fault}")
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """(3,) the markers' centroid, metres, dock frame: about it the pose is best known."""
+        return np.asarray(self.points.mean(axis=0), np.float64)
+
+    @cached_property
+    def symmetries(self) -> tuple[Symmetry, ...]:
+        """Turns after which the dock looks the same: see ``symmetry.symmetries``.
+
+        Of the default rectangle the half turn about its normal: what excludes it is that the
+        vehicle is upright.
+        """
+        return symmetries(self.points)
 
     @classmethod
     def default(cls) -> DockGeometry:

@@ -23,6 +23,10 @@ class Look:
     0..1535: of the markers as they should shine now.  ``priors``: where a track expects the
     dock in this frame, each with its information; ``everywhere``: also search where no prior
     has it; ``incomplete``: where no whole dock is found there, one with a marker out will do.
+    ``R_expected`` (3, 3): how the camera should see the dock turned, ``R_camera_dock``, by the
+    camera's mounting and the vehicle's attitude; None where the user told neither, and the
+    camera is taken for upright.  ``R_covariance`` (3, 3), radians squared: of small turns from
+    there about the camera's axes.
     """
 
     frame_bgr: NDArray[np.uint8]
@@ -32,6 +36,8 @@ class Look:
     priors: tuple[Estimate, ...] = ()
     everywhere: bool = True
     incomplete: bool = False
+    R_expected: NDArray[np.float64] | None = None
+    R_covariance: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

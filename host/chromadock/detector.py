@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from chromadock import method as contract
 from chromadock.camera import CameraModel
 from chromadock.colour.background import BackgroundColour, background_colour
-from chromadock.colour.hsv import degrees, rgb_from_hsv
+from chromadock.colour.hsv import degrees, nearest_hue
 from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue, observed_colour
 from chromadock.colour.working_image import smooth, working_image
 from chromadock.detection import Background, Detection, Marker
@@ -22,6 +22,7 @@ from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.hue_search import GUESS_DECADES, HueSearch
 from chromadock.look import Found, Look, Method
+from chromadock.marker_colour import MarkerColour
 from chromadock.paper.method import PaperMethod
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
@@ -38,8 +39,11 @@ METHODS = tuple(_METHODS)
 DEFAULT_METHOD = "robust"
 _TRACKED = frozenset({"robust"})
 """Methods that weigh their evidence and tell how sure a pose is, which a track needs."""
+_MASKED = frozenset({"paper"})
+"""Methods that look at pixels of one colour only."""
+FALLBACK_HUE_DEG = degrees(contract.FALLBACK_HUE)
 
-__all__ = ["DEFAULT_METHOD", "MAPPINGS", "METHODS", "Detector"]
+__all__ = ["DEFAULT_METHOD", "FALLBACK_HUE_DEG", "MAPPINGS", "METHODS", "Detector"]
 
 
 class Detector:
@@ -55,6 +59,13 @@ class Detector:
         One of ``METHODS``.
     mapping
         One of ``MAPPINGS``; the dock must use the same.
+    marker_colour
+        What the markers shine in, where the dock does not choose it by the water:
+        ``#RRGGBB``, ``white`` or ``any``, or the same parsed.  None takes ``dock.colour``; where
+        that is None too, the colour is worked out from the water's by ``mapping``.
+    fallback_hue_deg
+        Of the markers in grey water and at night, 0 .. 359.77; the dock's ``FALLBACK_HUE``
+        must be the same.
     independent
         Treat each frame alone: no rolling mean of the marker colour, no track.
     tracker
@@ -64,7 +75,8 @@ class Detector:
     Raises
     ------
     ChromadockError
-        Where a name is unknown or the dock has a shape that the method cannot find.
+        Where a name, a colour or a hue is none, or the dock has a shape or colour that the
+        method cannot find.
     """
 
     def __init__(
@@ -75,11 +87,21 @@ class Detector:
         mapping: str = contract.DEFAULT_MAPPING_NAME,
         independent: bool = False,
         tracker: Tracker | None = None,
+        marker_colour: MarkerColour | str | None = None,
+        fallback_hue_deg: float = FALLBACK_HUE_DEG,
     ) -> None:
         _check_name("method", method, METHODS)
         _check_name("mapping", mapping, MAPPINGS)
         self._camera = camera
         self._mapping = mapping
+        given = dock.colour if marker_colour is None else marker_colour
+        self._given = MarkerColour.parse(given) if isinstance(given, str) else given
+        if method in _MASKED and self._given is not None and self._given.kind == "any":
+            raise ChromadockError(
+                f"method {method} cannot look for markers of any colour: "
+                f"give their colour, or choose method {DEFAULT_METHOD}"
+            )
+        self._fallback_hue = _fallback_hue(fallback_hue_deg)
         self._rolling = None if independent else RollingHue()
         self._method = _METHODS[method](dock)
         self._tracker = None
@@ -127,14 +149,12 @@ class Detector:
         watch = Stopwatch()
 
         background = self._background(frame_bgr)
-        hue = marker_hue(background, self._mapping)
-        if self._rolling is not None:
-            hue = self._rolling.add(hue, round(time_s * 1000))
-        marker_rgb = rgb_from_hsv(hue, 255, 255)
-        observed = observed_colour(background.rgb, marker_rgb)
+        hue = self._expected_hue(background, time_s)
+        kind = "hue" if self._given is None else self._given.kind
+        look = Look(frame_bgr, background, hue, camera, colour=kind)
+        marker_rgb = look.marker_rgb
         watch.lap("colour")
 
-        look = Look(frame_bgr, background, hue, camera)
         track = None
         if self._tracker is None:
             found = self._method.find(look, watch)
@@ -167,10 +187,11 @@ class Detector:
             ),
             marker=Marker(
                 marker_rgb,
-                degrees(hue),
+                degrees(hue) if kind == "hue" else None,
                 None if found.hue is None else degrees(found.hue),
+                None if self._given is None else self._given.text,
             ),
-            observed=observed,
+            observed=None if marker_rgb is None else observed_colour(background.rgb, marker_rgb),
             passed_fraction=found.passed_fraction,
             blobs=found.blobs,
             markers=found.markers,
@@ -180,6 +201,13 @@ class Detector:
             track=track,
             timing_ms=watch.stop(),
         )
+
+    def _expected_hue(self, background: BackgroundColour, time_s: float) -> int:
+        """Hue 0..1535 of the markers: as given, or as an adaptive dock shows it now."""
+        if self._given is not None and self._given.hue is not None:
+            return self._given.hue
+        hue = marker_hue(background, self._mapping, self._fallback_hue)
+        return hue if self._rolling is None else self._rolling.add(hue, round(time_s * 1000))
 
     @staticmethod
     def _background(frame_bgr: NDArray[np.uint8]) -> BackgroundColour:
@@ -194,6 +222,18 @@ _nominal = lru_cache(maxsize=4)(CameraModel.nominal)
 def _check_name(what: str, name: str, known: tuple[str, ...]) -> None:
     if name not in known:
         raise ChromadockError(f"unknown {what} '{name}': choose one of {', '.join(known)}")
+
+
+def _fallback_hue(hue_deg: float) -> int:
+    """Hue 0..1535 of what a user set."""
+    try:
+        return nearest_hue(hue_deg)
+    except ValueError:
+        most = degrees(contract.HUE_RANGE - 1)
+        raise ChromadockError(
+            f"the fallback hue is {hue_deg:g}: give degrees, 0 .. {most:.2f}, "
+            "the same as the dock's FALLBACK_HUE"
+        ) from None
 
 
 def _check_frame(frame: NDArray[np.uint8]) -> None:

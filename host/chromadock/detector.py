@@ -212,7 +212,8 @@ class Detector:
     @staticmethod
     def _background(frame_bgr: NDArray[np.uint8]) -> BackgroundColour:
         working_rgb = cv2.cvtColor(working_image(frame_bgr), cv2.COLOR_BGR2RGB)
-        return background_colour(smooth(np.asarray(working_rgb, np.uint8)))
+        smoothed = smooth(np.asarray(working_rgb, np.uint8))
+        return background_colour(smoothed, contract.MIN_VALUE_VEHICLE)
 
 
 # One for all frames of a size: what a method prepares for a camera, it need not prepare again.

@@ -68,7 +68,7 @@ class MarkerColour:
         shown = f"#{digits[1].upper()}"
         rgb = np.frombuffer(bytes.fromhex(digits[1]), np.uint8)
         hue, saturation, value, _ = (int(part) for part in hsv_from_rgb(rgb))
-        if value < method.MIN_VALUE:
+        if value == 0:
             raise ChromadockError(f"{what} is {shown}, which no lamp shines in: give {WANTED}")
         if saturation < method.MIN_SATURATION:
             return cls("white", None, shown)

@@ -20,7 +20,7 @@ from chromadock.colour.working_image import smooth, working_image
 from chromadock.detection import Background, Detection, Marker
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
-from chromadock.look import Found, Look, Method
+from chromadock.look import Look, Method
 from chromadock.marker_colour import MarkerColour
 from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.paper.method import PaperMethod

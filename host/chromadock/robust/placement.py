@@ -16,7 +16,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.camera import CameraModel
 from chromadock.pose import Estimate, Sighting, projected
 
 Real = NDArray[np.float64]
@@ -36,9 +35,8 @@ class PosePrior:
     covariance ``R_covariance`` (3, 3), radians squared, of turns about the camera's axes.
     """
 
-    camera: CameraModel
-    area_px: float
     focal_px: float
+    area_px: float
     log_ranges: float
     R_expected: Real
     R_covariance: Real
@@ -51,7 +49,9 @@ class PosePrior:
     def log_density(self, R: Real, t: Real) -> float:
         """Of a pose, a cubic metre and cubic radian."""
         # A volume of z^3 / f^2 lies behind each square pixel and e-folding of range.
-        place = 2 * np.log(self.focal_px) - 3 * np.log(t[2]) - np.log(self.area_px * self.log_ranges)
+        place = (
+            2 * np.log(self.focal_px) - 3 * np.log(t[2]) - np.log(self.area_px * self.log_ranges)
+        )
         turn = cv2.Rodrigues(R @ self.R_expected.T)[0].ravel()
         norm = 0.5 * np.linalg.slogdet(2 * np.pi * self.R_covariance)[1]
         return float(place - 0.5 * turn @ self.R_information @ turn - norm)

@@ -79,7 +79,9 @@ class Search:
         triples = self._triples(apart[promising], promising, peaks.snr)
         if not len(triples.hope):
             return self._none
-        looks = _Looks.of(self._model, peaks, Clutter.of(np.abs(z - z[:, None]), peaks.snr, self._area))
+        looks = _Looks.of(
+            self._model, peaks, Clutter.of(np.abs(z - z[:, None]), peaks.snr, self._area)
+        )
         sets = triples.hopeful(looks, least)
         for step in self._steps[1:]:
             if not len(sets.hope):
@@ -120,7 +122,11 @@ class Search:
             span=span,
             shape=b[None, kept],
             place=place + step.log_peak[span] - 2 * log_size,
-            hope=place - model.log_share[span] + unlike + self._most[span] - 2 * len(self._steps) * log_size,
+            hope=place
+            - model.log_share[span]
+            + unlike
+            + self._most[span]
+            - 2 * len(self._steps) * log_size,
         )
 
     def _weighed(self, sets: _Sets, looks: _Looks, least: float) -> Candidates:

@@ -74,6 +74,18 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True)
+class Misfit:
+    """Something that stands like a dock but is none as the dock's file has it.
+
+    ``evidence``: decades by which the places, strengths and colours speak for a dock;
+    ``error_px``: root mean square distance of its markers from those of the rigid dock.
+    """
+
+    evidence: float
+    error_px: float
+
+
+@dataclass(frozen=True, slots=True)
 class Detection:
     """Everything one frame told.  Fields that do not apply are None.
 
@@ -95,6 +107,8 @@ class Detection:
     evidence: float | None = None
     estimates: tuple[Estimate, ...] = ()
     track: Track | None = None
+    clipped: float | None = None
+    misfit: Misfit | None = None
     timing_ms: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -128,6 +142,13 @@ class Detection:
             else {name: [_rounded(x, 2), _rounded(y, 2)] for name, (x, y) in self.markers.items()},
             "pose": None if self.pose is None else _pose_dict(self.pose),
             "evidence": _rounded(self.evidence, 2),
+            "clipped": _rounded(self.clipped, 3),
+            "misfit": None
+            if self.misfit is None
+            else {
+                "evidence": _rounded(self.misfit.evidence, 2),
+                "error_px": _rounded(self.misfit.error_px, 2),
+            },
             "track": None if self.track is None else _track_dict(self.track),
             "timing_ms": {stage: _rounded(ms, 2) for stage, ms in self.timing_ms.items()},
         }

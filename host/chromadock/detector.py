@@ -202,6 +202,8 @@ class Detector:
             evidence=found.evidence,
             estimates=found.estimates,
             track=track,
+            clipped=found.clipped,
+            misfit=found.misfit,
             timing_ms=watch.stop(),
         )
 

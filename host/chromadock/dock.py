@@ -48,19 +48,23 @@ class DockGeometry:
     colour
         Of lamps that shine in a colour of their own: ``#RRGGBB``, ``white`` or ``any``; None of
         a dock that chooses it by the water.
+    largest_range_m
+        From where the dock can be seen at most; what is found farther away is none.  None for
+        no such limit.
 
     Raises
     ------
     ChromadockError
         Fewer than three markers, a repeated name, a number that is not finite, markers
         that coincide or all lie on one line, a position that cannot be in metres, a colour
-        that is none.
+        that is none, a largest range that is not more than 0.
     """
 
     names: tuple[str, ...]
     points: NDArray[np.float64]
     source: str = "dock"
     colour: str | None = None
+    largest_range_m: float | None = None
 
     def __post_init__(self) -> None:
         points = np.array(self.points, dtype=np.float64)
@@ -72,6 +76,11 @@ class DockGeometry:
             raise ChromadockError(f"{self.source}: {fault}")
         if self.colour is not None:
             MarkerColour.parse(self.colour, f"{self.source}: colour")
+        farthest = self.largest_range_m
+        if farthest is not None and not (np.isfinite(farthest) and farthest > 0):
+            raise ChromadockError(
+                f"{self.source}: largest_range_m is {farthest:g}: give metres, more than 0"
+            )
 
     @property
     def centre(self) -> NDArray[np.float64]:
@@ -114,6 +123,7 @@ class _Marker(BaseModel):
 class _DockFile(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
     colour: str | None = None
+    largest_range_m: float | None = None
     marker: list[_Marker] = []
 
 
@@ -124,7 +134,9 @@ def _loaded(path: str | Path, source: str) -> DockGeometry:
     except ValidationError as error:
         raise ChromadockError(f"{source}: {_explain(error)}") from None
     points = np.array([m.position for m in file.marker], dtype=np.float64).reshape(-1, 3)
-    return DockGeometry(tuple(m.name for m in file.marker), points, source, file.colour)
+    return DockGeometry(
+        tuple(m.name for m in file.marker), points, source, file.colour, file.largest_range_m
+    )
 
 
 def _explain(error: ValidationError) -> str:
@@ -132,14 +144,16 @@ def _explain(error: ValidationError) -> str:
     fault: Any = error.errors()[0]
     where, of_marker = place(fault["loc"][:3]), len(fault["loc"]) > 1
     if fault["type"] == "extra_forbidden":
-        if of_marker and fault["loc"][-1] == "colour":
+        if of_marker and fault["loc"][-1] in ("colour", "largest_range_m"):
             return f"unknown key {where}: write it once, above the first [[marker]]"
-        known = "name and position" if of_marker else "colour and [[marker]]"
+        known = "name and position" if of_marker else "colour, largest_range_m and [[marker]]"
         return f"unknown key {where}: only {known} may stand there"
     if fault["type"] == "missing":
         return f"{where} is missing: each [[marker]] has a name and a position"
     if where == "colour":
         return f"colour is {shown(fault['input'])}: give {WANTED}"
+    if where == "largest_range_m":
+        return f"largest_range_m is {shown(fault['input'])}: give metres, such as 8.0"
     if "position" in fault["loc"]:
         return f"{where} must be three numbers in metres: position = [x, y, z]"
     if "name" in fault["loc"]:

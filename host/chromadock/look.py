@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from chromadock.camera import CameraModel
 from chromadock.colour.background import BackgroundColour
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.detection import RGB, Blob, Point, Pose
+from chromadock.detection import RGB, Blob, Misfit, Point, Pose
 from chromadock.marker_colour import ColourKind
 from chromadock.pose import Estimate
 from chromadock.stopwatch import Stopwatch
@@ -56,12 +56,14 @@ class Look:
 class Found:
     """What a method made of one frame; markers and pose are None if no dock was found.
 
-    ``state`` is ``found``, ``partial`` (all markers but one, about where a prior has them or
+    ``state`` is ``found``, ``uncertain`` (all markers, but their place may be off by more than
+    5 % of the range: no pose), ``partial`` (all markers but one, about where a prior has them or
     where ``incomplete`` allows it) or ``not_found``; ``passed_fraction`` the share of the frame
     that stands out in the markers' colour; ``pose`` the better one, with its alternative.
     ``estimates``: both, with their information, for a track.  ``evidence``: decades by which
     the dock explains what was seen better than clutter does; None where a method does not
-    weigh it.  ``hue`` 0..1535: of the light that the markers add, as received.
+    weigh it.  ``hue`` 0..1535: of the light that the markers add, as received; ``clipped`` and
+    ``misfit``: see ``Detection``.
     """
 
     state: str
@@ -72,6 +74,8 @@ class Found:
     estimates: tuple[Estimate, ...] = ()
     evidence: float | None = None
     hue: int | None = None
+    clipped: float | None = None
+    misfit: Misfit | None = None
 
 
 class Method(Protocol):

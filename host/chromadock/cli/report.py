@@ -30,6 +30,11 @@ _DISAGREEMENT_DEG = 75.0
 """The mean of so many tracked frames says whether dock and vehicle agree: single ones err by
 more, and water and crosstalk turn the light of a dock that agrees by up to about 60 degrees."""
 
+_MOST_CLIPPED = 0.6
+"""Share of overexposed lamps that deserves a word."""
+_MISFIT_FRAMES = 3
+"""One frame may be a chance."""
+
 _HEADER = (
     "   frame   time s  state       range m        x        y        z  error px"
     "  track             m  file"
@@ -52,6 +57,8 @@ class Report:
         self._tracked = 0
         self._skipped = 0
         self._off: list[complex] = []
+        self._clipped = 0
+        self._misfits = 0
 
     def frame(self, frame: Frame, detection: Detection) -> None:
         """Tell of one frame."""
@@ -62,6 +69,7 @@ class Report:
             self._aside(_looked_for(detection.marker))
         if detection.track is not None and detection.track.pose is not None:
             self._compare(detection.marker)
+        self._advise(detection)
         if self._json:
             record = {"file": frame.name, "frame": frame.index, "time_s": round(frame.time_s, 6)}
             self._print(json_line({**record, **detection.to_dict()}))
@@ -74,6 +82,24 @@ class Report:
         self._tracked += detection.track is not None and detection.track.state == "tracking"
         if self._bar is not None:
             self._bar.advance(self._bar.task_ids[0])
+
+    def _advise(self, detection: Detection) -> None:
+        """Say once what several frames have shown to be amiss."""
+        if detection.clipped is not None and detection.clipped > _MOST_CLIPPED:
+            self._clipped += 1
+            if self._clipped == _COMPARED_FRAMES:
+                self._aside(
+                    "warning: most lamps are overexposed: shorten this camera's exposure or dim "
+                    "the dock, for a range that is more exact"
+                )
+        if detection.misfit is not None:
+            self._misfits += 1
+            if self._misfits == _MISFIT_FRAMES:
+                self._aside(
+                    f"warning: something stands like the dock ({detection.misfit.evidence:.0f} "
+                    f"decades of evidence), but {detection.misfit.error_px:.0f} pixels off: check "
+                    "the markers in --dock and the calibration in --camera"
+                )
 
     def _compare(self, marker: Marker) -> None:
         """Say once that the dock is of another colour than expected."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.detection import Misfit
 from chromadock.pose import Estimate, Sighting, estimates, same_rotation
 from chromadock.pose import refined as refined_pose
 from chromadock.profile import widened
@@ -21,6 +22,10 @@ from chromadock.robust.response import Response
 from chromadock.robust.twin import is_image_of
 from chromadock.robust.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
 
+MISFIT_DECADES = 8.0
+"""Evidence of the search's from which on a set of peaks that is no rigid dock deserves a word: no
+photograph without a dock has as much."""
+
 MAX_CHOICES = 3
 """Places of each of four markers that are tried in every combination; of more markers two."""
 
@@ -29,7 +34,9 @@ MAX_CHOICES = 3
 class Measure:
     """One frame and what is known of it.
 
-    ``frame_bgr`` (H, W, 3) uint8; ``prior``: of the dock's pose; ``upright``: see ``View``.
+    ``frame_bgr`` (H, W, 3) uint8; ``prior``: of the dock's pose; ``upright``: see ``View``;
+    ``largest_range_m``: a dock farther away is none.  ``misfits`` receives what stood like a dock
+    and does not fit.
     """
 
     frame_bgr: NDArray[np.uint8]
@@ -37,6 +44,8 @@ class Measure:
     view: View
     prior: PosePrior
     upright: complex
+    largest_range_m: float
+    misfits: list[Misfit] = field(default_factory=list)
 
     def best(self, candidates: list[Candidate]) -> Constellation | None:
         """The dock: the candidate with most evidence, or what it is an image of."""
@@ -98,13 +107,22 @@ class Measure:
         # So many places to choose from are so many chances for clutter.
         evidence = placed.log_density + candidate.looks - float(np.log(len(xy)))
         if evidence < LEAST_EVIDENCE:
+            self._note(candidate.evidence, poses[0].reprojection_px)
             return None
         sighting = replace(sighting, sigma_px=placed.sigma_px)
         order = np.argsort(-placed.weights, kind="stable")
         again = (refined_pose(sighting, poses[k].R, poses[k].t) or poses[k] for k in order)
         wide = tuple(widened(sighting, pose) for pose in again)
+        if np.linalg.norm(wide[0].t) > self.largest_range_m:
+            return None
         markers = np.arange(len(self.view.points))
         return Constellation(markers, xy[k], evidence, wide, doubt(wide, placed.weights[order]))
+
+    def _note(self, evidence: float, error_px: float) -> None:
+        """What stood like a dock by the search's natural log of evidence, but does not fit."""
+        decades = evidence / float(np.log(10))
+        if decades >= MISFIT_DECADES:
+            self.misfits.append(Misfit(decades, error_px))
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()

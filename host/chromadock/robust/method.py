@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,7 @@ from chromadock.look import Found, Look
 from chromadock.robust.acceptance import MOST_DOUBT, Constellation
 from chromadock.robust.measure import Measure
 from chromadock.robust.peaks import MIN_SNR, Peaks, find_peaks
-from chromadock.robust.received import received_hue
+from chromadock.robust.received import clipped_share, received_hue
 from chromadock.robust.response import MIN_SIDE, Response, respond
 from chromadock.robust.view import View, upright
 from chromadock.stopwatch import Stopwatch
@@ -27,6 +29,8 @@ class RobustMethod:
 
     def __init__(self, dock: DockGeometry) -> None:
         self._dock = dock
+        # Wherever the dock frame has its origin: about the centroid the pose is best known.
+        self._points = dock.points - dock.centre
         self._view: View | None = None
         self._shape = (0, 0)
         self._response: Response | None = None
@@ -59,22 +63,31 @@ class RobustMethod:
             candidates = sorted((c for found in by_scale for c in found), key=lambda c: -c.evidence)
         watch.lap("search")
         prior = view.prior(look.R_expected, look.R_covariance)
-        measure = Measure(frame_bgr, response, view, prior, turn)
+        measure = Measure(
+            frame_bgr, response, view, prior, turn, self._dock.largest_range_m or np.inf
+        )
         best = measure.best(candidates)
         if best is None and look.incomplete:
             best = measure.incomplete(peaks)
         if best is None:
-            best = measure.about(look.priors, peaks)
+            priors = tuple(prior.about(self._dock.centre) for prior in look.priors)
+            best = measure.about(priors, peaks)
         watch.lap("pose")
-        return self._report(best, peaks, response)
+        found = self._report(frame_bgr, best, peaks, response)
+        misfit = max(measure.misfits, key=lambda m: m.evidence, default=None)
+        return found if best is not None else replace(found, misfit=misfit)
 
     def _view_of(self, camera: CameraModel) -> View:
         if self._view is None or not self._view.is_of(camera):
-            self._view = View(self._dock.points, camera)
+            self._view = View(self._points, camera)
         return self._view
 
     def _report(
-        self, best: Constellation | None, peaks: dict[int, Peaks], response: Response
+        self,
+        frame_bgr: NDArray[np.uint8],
+        best: Constellation | None,
+        peaks: dict[int, Peaks],
+        response: Response,
     ) -> Found:
         cells = _standing_out(response)
         passed = int(np.count_nonzero(cells)) / cells.size
@@ -85,16 +98,18 @@ class RobustMethod:
         places = zip(best.markers.tolist(), best.xy.tolist(), strict=True)
         sure = best.doubt <= MOST_DOUBT
         whole = "found" if len(best.markers) == len(names) else "partial"
-        alternative = best.poses[1].pose() if len(best.poses) > 1 else None
+        poses = tuple(pose.about(-self._dock.centre) for pose in best.poses)
+        alternative = poses[1].pose() if len(poses) > 1 else None
         return Found(
             state=whole if sure else "uncertain",
             passed_fraction=passed,
             blobs=blobs,
             markers={names[marker]: (x, y) for marker, (x, y) in places},
-            pose=best.poses[0].pose(alternative) if sure else None,
-            estimates=best.poses,
+            pose=poses[0].pose(alternative) if sure else None,
+            estimates=poses,
             evidence=best.evidence / float(np.log(10)),
             hue=received_hue(response, best.xy),
+            clipped=clipped_share(frame_bgr, best.xy),
         )
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from chromadock import method
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.robust.peaks import gained
+from chromadock.robust.refine import CLIPPED
 from chromadock.robust.response import Response, linear
 
 _STEP = 16  # of 1536: much finer than attenuation and crosstalk let a hue be known
@@ -39,6 +40,13 @@ def received_hue(response: Response, xy: NDArray[np.float64]) -> int | None:
         if hue is not None:
             return hue
     return None
+
+
+def clipped_share(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> float:
+    """Share 0..1 of markers at ``xy`` (n, 2) pixels whose core clips in some channel."""
+    height, width = frame_bgr.shape[:2]
+    column, row = np.clip(np.rint(xy).astype(np.intp), 0, [width - 1, height - 1]).T
+    return float(np.mean(frame_bgr[row, column].max(axis=1) >= CLIPPED))
 
 
 def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | None:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.track.attitude import R_BODY_CAMERA_FORWARD, Attitude
+from chromadock.mounting import R_BODY_CAMERA_FORWARD
+from chromadock.track.attitude import Attitude
 from chromadock.variety.backdrops import Backdrops, backdrop
 from chromadock.variety.docks import ORIGINAL_WIDTH_M
 from chromadock.variety.drawing import draw

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.robust.shape import MIN_SPACING_PX, ShapeModel, ideal
+from chromadock.robust.layout import FINE_CELL
+from chromadock.robust.shape import FACETS, MIN_SPACING_CELLS, ShapeModel, ideal
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points
@@ -75,13 +76,19 @@ def test_the_density_of_shapes_is_one_in_all(points: np.ndarray) -> None:
     sigma = np.full(len(points), 1.0)
     size, span = abs(z[1] - z[0]), np.searchsorted(model.edges, abs(z[1] - z[0]))
     rng = np.random.default_rng(1)
-    wide = 2.0 * model.covariance[span] + 8 * (1 / size) ** 2 * np.eye(len(model.mean[span]))
+    facets = np.arange(FACETS) + FACETS * span
+    wide = 1.5 * model.covariance[facets] + 8 * (1 / size) ** 2 * np.eye(model.mean.shape[1])
     chol = np.linalg.cholesky(wide)
+    share = np.exp(model.log_share[facets])
     ratios = []
     for _ in range(4000):
-        unit = rng.standard_normal(len(chol))
-        b = (model.mean[span] + chol @ unit).view(np.complex128)
-        log_proposal = -0.5 * unit @ unit - np.log(np.diag(chol) * np.sqrt(2 * np.pi)).sum()
+        facet = rng.choice(FACETS, p=share / share.sum())
+        b = model.mean[facets[facet]] + chol[facet] @ rng.standard_normal(chol.shape[1])
+        unit = np.linalg.solve(chol, (b - model.mean[facets])[..., None])[..., 0]
+        diagonal = np.diagonal(chol, axis1=1, axis2=2) * np.sqrt(2 * np.pi)
+        proposals = np.log(share) - 0.5 * (unit**2).sum(axis=1) - np.log(diagonal).sum(axis=1)
+        log_proposal = np.logaddexp.reduce(proposals)
+        b = np.ascontiguousarray(b).view(np.complex128)
         log_proposal -= 2 * len(b) * np.log(size)
         markers = np.concatenate([z[:2], z[0] + b * (z[1] - z[0])])
         ratios.append(np.exp(model.log_shape(markers[None], sigma[None])[0] - log_proposal))
@@ -116,7 +123,7 @@ def test_places_do_not_depend_on_the_lens() -> None:
 
 def test_the_farthest_views_have_markers_in_cells_that_do_not_touch() -> None:
     model = ShapeModel.learn(RECTANGLE, CAMERA)
-    assert model.side.shortest == pytest.approx(MIN_SPACING_PX, rel=0.15)
+    assert model.side.shortest == pytest.approx(MIN_SPACING_CELLS * FINE_CELL, rel=0.3)
 
 
 def test_a_camera_too_coarse_for_the_dock_is_no_error() -> None:

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
@@ -36,6 +37,11 @@ typedef struct {
 static double square(double x)
 {
     return x * x;
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
 }
 
 /* Density of Student's distribution in the plane with two degrees of freedom,
@@ -78,7 +84,7 @@ static void prepare_frame(frame_t *frame, const evidence_constants_t *constants,
         peak->log_snr = log(peaks->snr[i]);
         peak->weight = 1 / (square(constants->strength_spread) + square(noise));
         peak->log_density = 0.5 * log(peak->weight / (2 * PI));
-        peak->height = fmax(peak->log_snr - log(peaks->least_snr), 0);
+        peak->height = larger(peak->log_snr - log(peaks->least_snr), 0);
         peak->chroma_x = peaks->chroma[2 * i];
         peak->chroma_y = peaks->chroma[2 * i + 1];
         peak->variance = square(constants->colour_spread) +
@@ -164,7 +170,7 @@ static double rarity(const frame_t *frame, double height, int32_t stronger,
     double expected = stronger + 1;
     if (stronger == 0) {
         double fall = pow((b + strongest) / (b + height), a);
-        expected = fmin(fmax(fall, constants->clutter_most_fall), 1);
+        expected = larger(fall < 1 ? fall : 1, constants->clutter_most_fall);
     }
     double density = (nearby + 1) / (frame->disc_area + frame->area / expected);
     return -log(a / (b + height) * density);
@@ -179,9 +185,9 @@ static double clutter_colour(const frame_t *frame, const peak_t *peak,
                              int32_t around)
 {
     double supposed = frame->constants->colour_supposed;
-    double overall =
-        (fmax(everywhere, 0) + supposed * peak->supposed) / (count + supposed);
-    return (fmax(nearby, 0) + supposed * overall) / (around + supposed);
+    double overall = (larger(everywhere, 0) + supposed * peak->supposed) /
+                     (count + supposed);
+    return (larger(nearby, 0) + supposed * overall) / (around + supposed);
 }
 
 /* Likelihood ratio that a peak has a marker's colour, which makes its chroma
@@ -293,21 +299,22 @@ typedef struct {
     double least;
     int32_t count;
     const int32_t *promising;
-    /* Bounds, whatever the other members of a set are: of each peak's rarity
-     * and likeness, and of the log ratio that one's (second's) colour is the
-     * other's; the largest of all and of those with each. */
-    double rarity[SEARCH_MAX_PROMISING], most_rarity;
+    double place_x[SEARCH_MAX_PROMISING], place_y[SEARCH_MAX_PROMISING];
+    /* Bounds, whatever the other members of a set are: of a peak's rarity and
+     * likeness; of the sum of so many peaks'; of the log ratio that one peak's
+     * (second's) colour is the other's; and of that with any other. */
+    double rarity[SEARCH_MAX_PROMISING], rarest[SEARCH_MAX_PROMISING + 1];
     double colour[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
-    double most_colour[SEARCH_MAX_PROMISING];
-    /* And of what markers from the k-th on add to the log density of the
-     * strengths of those before. */
+    double nearest_colour[SEARCH_MAX_PROMISING];
+    /* And of what all markers but the first k add to the log density of the
+     * strengths. */
     double strengths_left[SEARCH_MAX_PROMISING + 1];
-    /* Peaks in the side window of p; and all of them as seen from the base. */
-    int32_t thirds_count, thirds[SEARCH_MAX_PROMISING];
-    int32_t all[SEARCH_MAX_PROMISING];
+    /* The set: the peaks taken for p, q, ..., their b, and of the base: its
+     * displacement over its length squared. */
+    int32_t set[SEARCH_MAX_PROMISING];
     double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
-    int32_t set[SEARCH_MAX_PROMISING]; /* the peaks taken for p, q, ... */
-    int32_t nodes_left;
+    double base_x, base_y;
+    int32_t weighed, most_weighed; /* sets, complete or not */
     /* What was found, the best first. */
     int32_t most_sets, found;
     int32_t *members;
@@ -330,9 +337,9 @@ static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
     double most = frame->heights - peak->height, least = frame->heights;
     for (int32_t i = 0; i < size; i++)
         least -= frame->peaks[i].height;
-    return fmax(
+    return larger(
         rarity(frame, peak->height, stronger, nearby, count, most, strongest),
-        rarity(frame, peak->height, stronger, nearby, count, fmax(least, 0),
+        rarity(frame, peak->height, stronger, nearby, count, larger(least, 0),
                strongest));
 }
 
@@ -349,19 +356,28 @@ static double least_clutter_colour(const frame_t *frame, const peak_t *peak,
                           peak->around - 1);
 }
 
+static int descending(const void *a, const void *b)
+{
+    double one = *(const double *)a, other = *(const double *)b;
+    return (one < other) - (one > other);
+}
+
 static void prepare_bounds(search_t *search)
 {
     const frame_t *frame = &search->frame;
     const evidence_constants_t *constants = frame->constants;
     int32_t markers = search->dock->markers;
-    search->most_rarity = -INFINITY;
     for (int32_t i = 0; i < search->count; i++) {
-        const peak_t *peak = peak_at(search, i);
-        search->rarity[i] =
-            most_rarity(frame, search->promising[i], markers) + peak->likeness;
-        search->most_rarity = fmax(search->most_rarity, search->rarity[i]);
-        search->most_colour[i] = 0;
+        search->rarity[i] = peak_at(search, i)->likeness +
+                            most_rarity(frame, search->promising[i], markers);
+        search->rarest[i + 1] = search->rarity[i];
+        search->nearest_colour[i] = 0;
     }
+    search->rarest[0] = 0;
+    qsort(search->rarest + 1, (size_t)search->count, sizeof(double),
+          descending);
+    for (int32_t i = 0; i < search->count; i++)
+        search->rarest[i + 1] += search->rarest[i];
     for (int32_t j = 0; j < search->count; j++) {
         const peak_t *peak = peak_at(search, j);
         double clutter = least_clutter_colour(frame, peak, markers);
@@ -369,36 +385,39 @@ static void prepare_bounds(search_t *search)
             double same = same_colour(peak_at(search, i), peak);
             double ratio = i == j ? 0 : log(colour_ratio(frame, same, clutter));
             search->colour[i][j] = ratio;
-            search->most_colour[i] = fmax(search->most_colour[i], ratio);
+            search->nearest_colour[i] =
+                larger(search->nearest_colour[i], ratio);
         }
     }
     /* Markers that no noise disturbs, all as strong, are as dense as any. */
-    double weight = 1 / square(constants->strength_spread);
+    double weight = 1 / square(constants->strength_spread), all = 0;
     double log_density = 0.5 * log(weight / (2 * PI));
     strengths_t strengths = {0};
     for (int32_t k = 1; k <= markers; k++) {
         add_strength(&strengths, 0, weight, log_density,
                      search->dock->along[k - 1]);
-        search->strengths_left[k] = -log_alike(constants, &strengths);
+        all = log_alike(constants, &strengths);
+        search->strengths_left[k] = -all;
     }
-    double all = -search->strengths_left[markers];
     for (int32_t k = 1; k <= markers; k++)
         search->strengths_left[k] += all;
 }
 
 /* What strengths, rarity and colours of a set may come to at most, whose first
- * k peaks are known: if the others are as rare as the rarest, and of the colour
- * nearest to that of the one that has the dock's. */
-static double hoped_looks(const search_t *search, int32_t k,
+ * k peaks are known: if the others are the rarest, and of the colour nearest
+ * to that of the one that has the dock's. */
+static double hoped_looks(search_t *search, int32_t k,
                           const strengths_t *strengths)
 {
     int32_t others = search->dock->markers - k;
-    double rarity = others * search->most_rarity, colour = -INFINITY;
+    search->weighed++;
+    double rarity = search->rarest[others], colour = -INFINITY;
     for (int32_t i = 0; i < k; i++) {
-        double common = others * search->most_colour[search->set[i]];
+        const double *ratios = search->colour[search->set[i]];
+        double common = others * search->nearest_colour[search->set[i]];
         for (int32_t j = 0; j < k; j++)
-            common += search->colour[search->set[i]][search->set[j]];
-        colour = fmax(colour, common);
+            common += ratios[search->set[j]];
+        colour = larger(colour, common);
         rarity += search->rarity[search->set[i]];
     }
     return log_alike(search->frame.constants, strengths) +
@@ -452,6 +471,48 @@ static bool is_in_set(const search_t *search, int32_t k, int32_t peak)
     return false;
 }
 
+/* The two components of w that the k-th marker adds, as they depend on its
+ * b = x + iy: u + ux x and v + vx x + vy y. */
+typedef struct {
+    double u, v, ux, vx, vy;
+} expected_t;
+
+static expected_t expect(const search_t *search, int32_t k, int32_t class)
+{
+    const search_dock_t *dock = search->dock;
+    int32_t row = 2 * (k - 2), wide = 2 * (dock->markers - 2);
+    const double *by_u = dock->whiten + (class * wide + row) * wide;
+    const double *by_v = by_u + wide;
+    expected_t w = {.u = dock->offset[class * wide + row],
+                    .v = dock->offset[class * wide + row + 1],
+                    .ux = by_u[row],
+                    .vx = by_v[row],
+                    .vy = by_v[row + 1]};
+    for (int32_t i = 2; i < k; i++) {
+        double x = search->x[i], y = search->y[i];
+        w.u += by_u[2 * i - 4] * x + by_u[2 * i - 3] * y;
+        w.v += by_v[2 * i - 4] * x + by_v[2 * i - 3] * y;
+    }
+    return w;
+}
+
+static double off_square(const expected_t *w, double x, double y)
+{
+    return square(w->u + w->ux * x) + square(w->v + w->vx * x + w->vy * y);
+}
+
+/* Take a peak for the k-th marker. */
+static void take(search_t *search, int32_t k, int32_t i, double x, double y,
+                 strengths_t *strengths)
+{
+    const peak_t *peak = peak_at(search, i);
+    add_strength(strengths, peak->log_snr, peak->weight, peak->log_density,
+                 search->dock->along[k]);
+    search->set[k] = i;
+    search->x[k] = x;
+    search->y[k] = y;
+}
+
 /* Add all markers from the k-th on to a set, in a class of views.
  *
  * place: log density of the places if these markers are right where they are
@@ -459,110 +520,135 @@ static bool is_in_set(const search_t *search, int32_t k, int32_t peak)
 static void extend(search_t *search, int32_t k, int32_t class, double place,
                    const strengths_t *strengths)
 {
-    const search_dock_t *dock = search->dock;
-    if (k == dock->markers) {
+    if (k == search->dock->markers) {
         keep(search, place);
         return;
     }
-    if (search->nodes_left <= 0)
-        return;
-    search->nodes_left--;
-    /* The two components of w that this marker adds. */
-    int32_t row = 2 * (k - 2), wide = 2 * (dock->markers - 2);
-    const double *by_u = dock->whiten + (ptrdiff_t)(class * wide + row) * wide;
-    const double *by_v = by_u + wide;
-    double u0 = dock->offset[class * wide + row];
-    double v0 = dock->offset[class * wide + row + 1];
-    for (int32_t i = 2; i < k; i++) {
-        double x = search->x[search->set[i]], y = search->y[search->set[i]];
-        u0 += by_u[2 * i - 4] * x + by_u[2 * i - 3] * y;
-        v0 += by_v[2 * i - 4] * x + by_v[2 * i - 3] * y;
-    }
-    double ux = by_u[row], vx = by_v[row], vy = by_v[row + 1];
-    const int32_t *pool = k == 2 ? search->thirds : search->all;
-    int32_t pool_count = k == 2 ? search->thirds_count : search->count;
-    for (int32_t i = 0; i < pool_count; i++) {
-        int32_t next = pool[i];
-        double u = u0 + ux * search->x[next];
-        double v = v0 + vx * search->x[next] + vy * search->y[next];
-        double off = u * u + v * v;
-        if (off >= dock->near || is_in_set(search, k, next))
+    expected_t expected = expect(search, k, class);
+    double first_x = search->place_x[search->set[0]];
+    double first_y = search->place_y[search->set[0]];
+    for (int32_t i = 0; i < search->count; i++) {
+        double dx = search->place_x[i] - first_x;
+        double dy = search->place_y[i] - first_y;
+        double x = dx * search->base_x + dy * search->base_y;
+        double y = dy * search->base_x - dx * search->base_y;
+        double off = off_square(&expected, x, y);
+        if (off >= search->dock->near || is_in_set(search, k, i))
             continue;
-        const peak_t *peak = peak_at(search, next);
-        strengths_t sums = *strengths;
-        add_strength(&sums, peak->log_snr, peak->weight, peak->log_density,
-                     dock->along[k]);
-        search->set[k] = next;
+        if (search->weighed >= search->most_weighed)
+            return;
         double there = place - 0.5 * off;
+        strengths_t sums = *strengths;
+        take(search, k, i, x, y, &sums);
         if (there + hoped_looks(search, k + 1, &sums) >= search->least)
             extend(search, k + 1, class, there, &sums);
     }
 }
 
-/* Whether a window holds a displacement, and its components along and across
- * the window's direction. */
-static bool holds(const search_window_t *window, double slack, double x,
-                  double y, double *along, double *across)
+/* A displacement, its square, and its components along and across a window's
+ * direction. */
+typedef struct {
+    int32_t peak;
+    double x, y, square, along, across;
+} view_t;
+
+/* List the promising peaks that a window holds as seen from one of them. */
+static int32_t views_from(const search_t *search, int32_t from,
+                          const search_window_t *window, view_t *views)
 {
-    double length_square = x * x + y * y;
-    *along = x * window->x + y * window->y;
-    *across = y * window->x - x * window->y;
-    return fabs(*across) < window->slope * *along + slack &&
-           length_square < square(window->longest + slack) &&
-           length_square > square(fmax(window->shortest - slack, 0));
+    double slack = search->dock->slack;
+    double shortest = square(larger(window->shortest - slack, 0));
+    double longest = square(window->longest + slack);
+    int32_t count = 0;
+    for (int32_t i = 0; i < search->count; i++) {
+        view_t view = {.peak = i,
+                       .x = search->place_x[i] - search->place_x[from],
+                       .y = search->place_y[i] - search->place_y[from]};
+        view.square = view.x * view.x + view.y * view.y;
+        view.along = view.x * window->x + view.y * window->y;
+        view.across = view.y * window->x - view.x * window->y;
+        if (fabs(view.across) < window->slope * view.along + slack &&
+            view.square > shortest && view.square < longest)
+            views[count++] = view;
+    }
+    return count;
 }
 
-/* Search all sets whose base is p and q, the latter displaced by (x, y), which
- * lies so far along and across the base's window. */
-static void search_base(search_t *search, int32_t p, int32_t q, double x,
-                        double y, double along, double across)
+/* Search all sets with a base and a third marker, at x + iy as seen from it. */
+static void search_third(search_t *search, const view_t *base, int32_t span,
+                         int32_t third, double x, double y)
 {
     const search_dock_t *dock = search->dock;
-    const peak_t *first = peak_at(search, p), *second = peak_at(search, q);
-    double length_square = x * x + y * y, log_square = log(length_square);
-    /* The base is even in log length and normal in direction; each marker's
-     * place is as much denser than its b as the base squared is small. */
-    double spread = log(dock->base.longest / dock->base.shortest);
-    double turned = atan2(across, along) / dock->roll_rad;
-    double place = -0.5 * square(turned) -
-                   log(spread * dock->roll_rad * sqrt(2 * PI)) -
-                   log(search->frame.area) - (dock->markers - 1) * log_square;
+    double looks = 0, place = 0;
+    bool known = false;
     strengths_t strengths = {0};
-    add_strength(&strengths, first->log_snr, first->weight, first->log_density,
-                 dock->along[0]);
-    add_strength(&strengths, second->log_snr, second->weight,
-                 second->log_density, dock->along[1]);
-    search->set[0] = p;
-    search->set[1] = q;
-    double hope = place + hoped_looks(search, 2, &strengths);
-    int32_t span = 0;
-    while (span < dock->spans - 1 && square(dock->edges[span]) < length_square)
-        span++;
-    bool prepared = false;
     for (int32_t facet = 0; facet < dock->facets; facet++) {
         int32_t class = span * dock->facets + facet;
-        if (hope + dock->log_norm[class] < search->least)
+        expected_t expected = expect(search, 2, class);
+        double off = off_square(&expected, x, y);
+        if (off >= dock->near)
             continue;
-        for (int32_t i = 0; i < search->count && !prepared; i++) {
-            double dx = peak_at(search, i)->x - first->x;
-            double dy = peak_at(search, i)->y - first->y;
-            search->x[i] = (dx * x + dy * y) / length_square;
-            search->y[i] = (dy * x - dx * y) / length_square;
+        if (search->weighed >= search->most_weighed)
+            return;
+        if (!known) {
+            known = true;
+            /* The base is even in log length and normal in direction; each
+             * marker's place is as much denser than its b as the base squared
+             * is small. */
+            double turned = atan2(base->across, base->along) / dock->roll_rad;
+            place = -0.5 * square(turned) - dock->log_spread -
+                    log(search->frame.area) -
+                    (dock->markers - 1) * log(base->square);
+            take(search, 0, search->set[0], 0, 0, &strengths);
+            take(search, 1, base->peak, 1, 0, &strengths);
+            take(search, 2, third, x, y, &strengths);
+            looks = hoped_looks(search, 3, &strengths);
         }
-        prepared = true;
-        extend(search, 2, class, place + dock->log_norm[class], &strengths);
+        double there = place + dock->log_norm[class] - 0.5 * off;
+        if (there + looks >= search->least)
+            extend(search, 3, class, there, &strengths);
+    }
+}
+
+/* Search all sets whose first marker is at a peak. */
+static void search_from(search_t *search, int32_t p)
+{
+    const search_dock_t *dock = search->dock;
+    view_t sides[SEARCH_MAX_PROMISING], bases[SEARCH_MAX_PROMISING];
+    int32_t sides_count = views_from(search, p, &dock->side, sides);
+    int32_t bases_count = 0;
+    if (sides_count > 0)
+        bases_count = views_from(search, p, &dock->base, bases);
+    search->set[0] = p;
+    for (int32_t i = 0; i < bases_count; i++) {
+        const view_t *base = &bases[i];
+        int32_t span = 0;
+        while (span < dock->spans - 1 &&
+               square(dock->edges[span]) < base->square)
+            span++;
+        const search_box_t *box = &dock->thirds[span];
+        search->base_x = base->x / base->square;
+        search->base_y = base->y / base->square;
+        for (int32_t j = 0; j < sides_count; j++) {
+            const view_t *side = &sides[j];
+            double x = side->x * search->base_x + side->y * search->base_y;
+            double y = side->y * search->base_x - side->x * search->base_y;
+            if (x > box->left && x < box->right && y > box->top &&
+                y < box->bottom && side->peak != base->peak)
+                search_third(search, base, span, side->peak, x, y);
+        }
     }
 }
 
 int32_t search_find(const evidence_constants_t *constants,
                     const search_dock_t *dock, const evidence_peaks_t *peaks,
                     int32_t promising_count, const int32_t *promising,
-                    double least, int32_t most_sets, int32_t most_nodes,
+                    double least, int32_t most_sets, int32_t most_weighed,
                     int32_t *members, double *evidence, double *looks,
-                    int32_t *nodes)
+                    int32_t *weighed)
 {
     search_t search;
-    *nodes = 0;
+    *weighed = 0;
     if (peaks->count > SEARCH_MAX_PEAKS ||
         promising_count > SEARCH_MAX_PROMISING)
         return -1;
@@ -573,32 +659,20 @@ int32_t search_find(const evidence_constants_t *constants,
     search.least = least;
     search.count = promising_count;
     search.promising = promising;
-    search.nodes_left = most_nodes;
+    search.weighed = 0;
+    search.most_weighed = most_weighed;
     search.most_sets = most_sets;
     search.found = 0;
     search.members = members;
     search.evidence = evidence;
     search.looks = looks;
     prepare_bounds(&search);
-    for (int32_t i = 0; i < search.count; i++)
-        search.all[i] = i;
-    for (int32_t p = 0; p < search.count; p++) {
-        const peak_t *first = peak_at(&search, p);
-        double along, across;
-        search.thirds_count = 0;
-        for (int32_t i = 0; i < search.count; i++) {
-            const peak_t *peak = peak_at(&search, i);
-            if (holds(&dock->side, dock->slack, peak->x - first->x,
-                      peak->y - first->y, &along, &across))
-                search.thirds[search.thirds_count++] = i;
-        }
-        for (int32_t q = 0; q < search.count && search.thirds_count > 0; q++) {
-            double x = peak_at(&search, q)->x - first->x;
-            double y = peak_at(&search, q)->y - first->y;
-            if (holds(&dock->base, dock->slack, x, y, &along, &across))
-                search_base(&search, p, q, x, y, along, across);
-        }
+    for (int32_t i = 0; i < search.count; i++) {
+        search.place_x[i] = peak_at(&search, i)->x;
+        search.place_y[i] = peak_at(&search, i)->y;
     }
-    *nodes = most_nodes - search.nodes_left;
+    for (int32_t p = 0; p < search.count; p++)
+        search_from(&search, p);
+    *weighed = search.weighed;
     return search.found;
 }

@@ -75,6 +75,11 @@ typedef struct {
     double shortest, longest, x, y, slope;
 } search_window_t;
 
+/* A rectangle of complex numbers. */
+typedef struct {
+    double left, right, top, bottom;
+} search_box_t;
+
 /* What a dock of n markers looks like to one camera, for peaks of one scale.
  *
  * Its first two markers, p and q, are the base; the shape of the others is
@@ -91,6 +96,8 @@ typedef struct {
     search_window_t base, side; /* of q, and of the third marker, from p */
     double slack;               /* pixels: what windows allow for errors */
     double roll_rad;            /* standard deviation of the base's direction */
+    double log_spread;          /* log of the base's range of log lengths, times
+                                 * roll_rad sqrt(2 pi) */
     double near;            /* w's square for one marker is less in a dock */
     const double *along;    /* n: places along the dock, -1..1 */
     const double *edges;    /* spans - 1 lengths between them, pixels */
@@ -99,25 +106,27 @@ typedef struct {
     const double *offset;   /* spans x facets x 2m: minus W times the mean */
     const double *whiten;   /* spans x facets x 2m x 2m: W, lower triangular;
                              * Re b_3, Im b_3, Re b_4, ... */
+    const search_box_t *thirds; /* spans: where b_3 is near in some facet */
 } search_dock_t;
 
 /* Find the sets of promising peaks with an evidence of least or more.
  *
  * promising: promising_count (at most SEARCH_MAX_PROMISING) indices of peaks,
  * ascending; markers are looked for among them, all peaks are clutter.
- * most_sets: the best so many are kept.  most_nodes: how many incomplete sets
- * are extended before the search gives up, which bounds its time.
+ * most_sets: the best so many are kept.
+ * most_weighed: after weighing so many sets, complete or not, the search gives
+ * up, which bounds its time; it begins with the strongest peaks.
  * members: receives most_sets x n indices of peaks, those of p, q, the third...
  * evidence, looks: receive most_sets values each, the best set first: all of
  * the evidence, and the part of it that evidence_of_sets gives.
- * nodes: receives how many incomplete sets were extended.
+ * weighed: receives how many sets were weighed.
  * Returns the number of sets found, which all differ; -1 if there are too many
  * peaks. */
 int32_t search_find(const evidence_constants_t *constants,
                     const search_dock_t *dock, const evidence_peaks_t *peaks,
                     int32_t promising_count, const int32_t *promising,
-                    double least, int32_t most_sets, int32_t most_nodes,
+                    double least, int32_t most_sets, int32_t most_weighed,
                     int32_t *members, double *evidence, double *looks,
-                    int32_t *nodes);
+                    int32_t *weighed);
 
 #endif

@@ -19,8 +19,8 @@ from chromadock.robust.shape import FACETS, Complex, Real, ShapeModel, Window
 MAX_SETS = 64
 """Sets that are kept: more than anyone looks at."""
 
-MAX_NODES = 4000
-"""Incomplete sets that are extended: bounds the time.  Few frames have a tenth of that."""
+MAX_WEIGHED = 4000
+"""Sets, complete or not, that are weighed: bounds the time.  Few frames have half as many."""
 
 # Chi-square with two degrees of freedom that true markers exceed in 0.3%.
 _NEAR = 18.0
@@ -31,11 +31,13 @@ class Candidates:
     """``members`` (M, n): a peak for each marker; ``evidence`` (M,), best first.
 
     ``looks`` (M,): the part of the evidence that has nothing to do with where exactly they are.
+    ``weighed``: how many sets were, complete or not; at MAX_WEIGHED the search gave up.
     """
 
     members: NDArray[np.intp]
     evidence: Real
     looks: Real
+    weighed: int
 
 
 class Search:
@@ -49,24 +51,41 @@ class Search:
         self._area = frame_area
         self._by_marker = np.argsort(model.order)
         bounds = np.concatenate([[model.base.shortest], model.edges, [model.base.longest]])
-        middles = np.sqrt(bounds[:-1] * bounds[1:]).repeat(FACETS)
-        size = model.mean.shape[1]
+        spans, size = len(bounds) - 1, model.mean.shape[1]
         # The errors of the base's ends add half of the marker's own.
-        noise = (1.5 * (sigma_px / middles) ** 2)[:, None, None] * np.eye(size)
-        whiten = np.tril(np.linalg.inv(np.linalg.cholesky(model.covariance + noise)))
-        peak = np.log(np.diagonal(whiten, axis1=1, axis2=2)).sum(axis=1)
+        noise = 1.5 * sigma_px**2 / (bounds[:-1] * bounds[1:]).repeat(FACETS)
+        covariance = model.covariance + noise[:, None, None] * np.eye(size)
+        whiten = np.tril(np.linalg.inv(np.linalg.cholesky(covariance)))
+        peak = np.log(np.diagonal(whiten, axis1=1, axis2=2) / np.sqrt(2 * np.pi)).sum(axis=1)
+        reach = np.sqrt(_NEAR * np.diagonal(covariance, axis1=1, axis2=2)[:, :2])
+        low = (model.mean[:, :2] - reach).reshape(spans, FACETS, 2).min(axis=1)
+        high = (model.mean[:, :2] + reach).reshape(spans, FACETS, 2).max(axis=1)
+        turns = model.roll_rad * np.sqrt(2 * np.pi)
         # C's pointers keep nothing alive.
         self._kept = [
             doubles(model.along),
             doubles(model.edges),
-            doubles(model.log_share + peak - size / 2 * np.log(2 * np.pi)),
+            doubles(model.log_share + peak),
             doubles(-(whiten @ model.mean[..., None])),
             doubles(whiten),
+            ffi.from_buffer("search_box_t[]", np.stack([low, high], axis=2)),
         ]
         side = model.side.beyond(apart_px)
-        dock = (len(model.order), len(bounds) - 1, FACETS, _native(model.base), _native(side))
-        numbers = (2 * sigma_px, model.roll_rad, _NEAR)
-        self._dock = ffi.new("search_dock_t *", (*dock, *numbers, *self._kept))
+        self._dock = ffi.new(
+            "search_dock_t *",
+            (
+                len(model.order),
+                spans,
+                FACETS,
+                _native(model.base),
+                _native(side),
+                2 * sigma_px,
+                model.roll_rad,
+                np.log(np.log(model.base.longest / model.base.shortest) * turns),
+                _NEAR,
+                *self._kept,
+            ),
+        )
 
     def find(self, z: Complex, peaks: Peaks, least: float) -> Candidates:
         """Sets of peaks with an evidence of ``least`` or more.
@@ -83,6 +102,7 @@ class Search:
         """
         members = np.empty((MAX_SETS, len(self._by_marker)), np.int32)
         evidence, looks = np.empty((2, MAX_SETS))
+        weighed = ffi.new("int32_t *")
         native = NativePeaks(z, peaks, self._area)
         promising = np.ascontiguousarray(peaks.promising, np.int32)
         count = lib.search_find(
@@ -93,16 +113,16 @@ class Search:
             ffi.from_buffer("int32_t[]", promising),
             least,
             MAX_SETS,
-            MAX_NODES,
+            MAX_WEIGHED,
             ffi.from_buffer("int32_t[]", members),
             doubles(evidence),
             doubles(looks),
-            ffi.new("int32_t *"),
+            weighed,
         )
         if count < 0:
             raise ValueError(f"{len(peaks.snr)} peaks, {len(promising)} promising: too many")
         ordered = members[:count, self._by_marker].astype(np.intp)
-        return Candidates(ordered, evidence[:count], looks[:count])
+        return Candidates(ordered, evidence[:count], looks[:count], weighed[0])
 
 
 def _native(window: Window) -> Any:

@@ -533,7 +533,7 @@ static void extend(search_t *search, int32_t k, int32_t class, double place,
         double x = dx * search->base_x + dy * search->base_y;
         double y = dy * search->base_x - dx * search->base_y;
         double off = off_square(&expected, x, y);
-        if (off >= search->dock->near || is_in_set(search, k, i))
+        if (off >= search->dock->gate || is_in_set(search, k, i))
             continue;
         if (search->weighed >= search->most_weighed)
             return;
@@ -586,7 +586,7 @@ static void search_third(search_t *search, const view_t *base, int32_t span,
         int32_t class = span * dock->facets + facet;
         expected_t expected = expect(search, 2, class);
         double off = off_square(&expected, x, y);
-        if (off >= dock->near)
+        if (off >= dock->gate)
             continue;
         if (search->weighed >= search->most_weighed)
             return;

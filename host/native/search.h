@@ -98,7 +98,7 @@ typedef struct {
     double roll_rad;            /* standard deviation of the base's direction */
     double log_spread;          /* log of the base's range of log lengths, times
                                  * roll_rad sqrt(2 pi) */
-    double near;            /* w's square for one marker is less in a dock */
+    double gate; /* w squared is less than this for each marker of a dock */
     const double *along;    /* n: places along the dock, -1..1 */
     const double *edges;    /* spans - 1 lengths between them, pixels */
     const double *log_norm; /* spans x facets: log of the facet's share in the
@@ -106,7 +106,8 @@ typedef struct {
     const double *offset;   /* spans x facets x 2m: minus W times the mean */
     const double *whiten;   /* spans x facets x 2m x 2m: W, lower triangular;
                              * Re b_3, Im b_3, Re b_4, ... */
-    const search_box_t *thirds; /* spans: where b_3 is near in some facet */
+    const search_box_t
+        *thirds; /* spans: where b_3 passes the gate of some facet */
 } search_dock_t;
 
 /* Find the sets of promising peaks with an evidence of least or more.

@@ -22,7 +22,7 @@ MAX_SETS = 64
 MAX_WEIGHED = 4000
 """Sets, complete or not, that are weighed: bounds the time.  Few frames have half as many."""
 
-# Chi-square with two degrees of freedom that true markers exceed in 0.3%.
+# Chi-square with two degrees of freedom that one true marker in 8000 exceeds.
 _NEAR = 18.0
 
 

@@ -92,7 +92,10 @@ def simulated_views(candidates: NDArray[np.int64]) -> Views:
     for water in _waters():
         lamp = _lamp_signal(water, vehicle, drive)
         for radiance in _radiances(water):
-            seen = [_hue(camera, radiance) for camera in (vehicle, dock)]
+            seen = [
+                _hue(vehicle, radiance, method.MIN_VALUE_VEHICLE),
+                _hue(dock, radiance, method.MIN_VALUE),
+            ]
             if None not in seen:
                 hues.append(seen)
                 ranges.append(_farthest_m(water, radiance, lamp, vehicle, drive))
@@ -138,13 +141,13 @@ def _exposed(camera: CameraSpec, radiance: Floats) -> tuple[Floats, CameraSettin
     return np.minimum(signal * camera.sensor.level(settings), 1.0), settings
 
 
-def _hue(camera: CameraSpec, radiance: Floats) -> int | None:
+def _hue(camera: CameraSpec, radiance: Floats, min_value: int) -> int | None:
     """Hue 0..1535 of the water in the camera's picture; None where it means nothing."""
     light, _ = _exposed(camera, radiance)
     corrected = np.clip(camera.sensor.colour_matrix @ light, 0, 1)
     rgb = tone_curve(camera.sensor.gamma)[np.rint(65535 * corrected).astype(int)]
     hue, saturation, value, _ = hsv_from_rgb(rgb)
-    grey = saturation < method.MIN_SATURATION or value < method.MIN_VALUE
+    grey = saturation < method.MIN_SATURATION or value < min_value
     return None if grey else int(hue)
 
 

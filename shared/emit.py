@@ -51,6 +51,7 @@ def constants(m: Method) -> dict[str, int]:
         "GREY_BINS": m["background"]["bins"],
         "MIN_SATURATION": m["background"]["min_saturation"],
         "MIN_VALUE": m["background"]["min_value"],
+        "MIN_VALUE_VEHICLE": m["background"]["min_value_vehicle"],
         "MIN_RESULTANT": m["background"]["min_resultant"],
         "FALLBACK_HUE": m["marker"]["fallback_hue"],
         **{f"MAPPING_{k.upper()}": i for i, k in enumerate(mappings)},

@@ -85,6 +85,13 @@ def opposite(u: float, v: float) -> tuple[float, float, float]:
     return (130, 80, 80) if u < 0.5 else (66, 116, 116)
 
 
+def lamps_glow(u: float, v: float) -> tuple[float, float, float]:
+    """Night: green lamps and their light in the water, less the farther from them."""
+    off = min((u - lamp) ** 2 for lamp in (0.3, 0.7)) + 0.5 * (v - 0.48) ** 2
+    glow = 12 / (0.08 + off**0.5)
+    return (255, 255, 255) if off < 0.0004 else (0.3 * glow, glow, 0.4 * glow)
+
+
 def frames() -> list[tuple[str, str, int, int, str, bytes]]:
     """Name, format, width, height, mapping, pixels of every golden frame."""
     pool = water(40, 140, 190, (250, 120, 240))
@@ -114,8 +121,11 @@ def frames() -> list[tuple[str, str, int, int, str, bytes]]:
         ("saturation_25", RGB888, 1, 1, "ternary", flat(230, 255, 255), 0),
         ("value_16", RGB888, 1, 1, "complement", flat(4, 10, 16), 0),
         ("value_15", RGB888, 1, 1, "complement", flat(4, 10, 15), 0),
+        ("value_48", RGB888, 1, 1, "complement", flat(12, 30, 48), 0),
+        ("value_47", RGB888, 1, 1, "complement", flat(12, 30, 47), 0),
         ("pool_contrast", RGB565, 160, 120, "contrast", pool, 12),
         ("brown_contrast", RGB888, 80, 60, "contrast", brown, 12),
+        ("lamps_glow", RGB888, 80, 60, "ternary", lamps_glow, 12),
         ("night_contrast", RGB888, 1, 1, "contrast", flat(2, 4, 9), 0),
     ]
     return [
@@ -138,6 +148,7 @@ def frame_vectors(m: Method, t: Tables) -> tuple[list[dict[str, Any]], bytes]:
         working = reference.working_image(m, frame, fmt, width, height)
         smoothed = reference.smooth(m, working)
         background = reference.background(m, t, smoothed)
+        seen = reference.background(m, t, smoothed, "vehicle")
         fallback = m["marker"]["fallback_hue"]
         hue = reference.marker_hue(m, t, background, mapping, fallback)
         records.append(
@@ -153,6 +164,10 @@ def frame_vectors(m: Method, t: Tables) -> tuple[list[dict[str, Any]], bytes]:
                 "smoothed_at": store(bytes(c for p in smoothed for c in p)),
                 "background": background,
                 "marker_hue": hue,
+                "vehicle": {
+                    "meaningful": seen["meaningful"],
+                    "marker_hue": reference.marker_hue(m, t, seen, mapping, fallback),
+                },
                 "duties": reference.led_duties(m, t, hue, NEUTRAL_LED),
             }
         )

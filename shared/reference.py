@@ -141,8 +141,12 @@ def hue_of_vector(m: Method, t: Tables, x: int, y: int) -> int | None:
     return hue % turn
 
 
-def background(m: Method, t: Tables, image: list[Pixel]) -> dict[str, Any]:
-    """The fullest grey bin and the mean colour of its pixels."""
+def background(m: Method, t: Tables, image: list[Pixel], side: str = "dock") -> dict[str, Any]:
+    """The fullest grey bin and the mean colour of its pixels.
+
+    ``side``, ``dock`` or ``vehicle``, decides only below which value the water is taken for
+    dark: what the vehicle's camera sees at night is the glow of the lamps that it looks at.
+    """
     bins = m["background"]["bins"]
     bin_of = [grey(m, p) * bins >> 8 for p in image]
     counts = [bin_of.count(b) for b in range(bins)]
@@ -170,7 +174,7 @@ def background(m: Method, t: Tables, image: list[Pixel]) -> dict[str, Any]:
     meaningful = (
         mean_hue is not None
         and saturation >= m["background"]["min_saturation"]
-        and value >= m["background"]["min_value"]
+        and value >= m["background"]["min_value" if side == "dock" else "min_value_vehicle"]
         and resultant >= m["background"]["min_resultant"]
     )
     hue = mean_hue or 0

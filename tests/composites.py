@@ -48,11 +48,14 @@ def compose(
     range_m: float,
     rng: np.random.Generator,
     mapping: str = "ternary",
+    hue: int | None = None,
 ) -> Composite:
-    """One frame: the dock somewhere in view, its markers lit by the mapping of this water."""
+    """One frame: the dock somewhere in view, its markers lit by the mapping of this water, or
+    in a hue of their own."""
     rgb = photograph_bgr[..., ::-1]
     water = background_colour(smooth(working_image(np.ascontiguousarray(rgb))))
-    pure = to_linear(np.array(rgb_from_hsv(marker_hue(water, mapping), 255, 255)))
+    hue = marker_hue(water, mapping) if hue is None else hue
+    pure = to_linear(np.array(rgb_from_hsv(hue, 255, 255)))
     R, t, pixels = _pose_in_view(range_m, rng)
     light = to_linear(rgb)
     attenuation = rng.uniform(*ATTENUATION)

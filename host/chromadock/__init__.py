@@ -11,6 +11,7 @@ from chromadock.detection import Detection
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
+from chromadock.mounting import Mounting
 from chromadock.track.attitude import Attitude
 from chromadock.track.result import Track
 from chromadock.track.tracker import Tracker
@@ -22,6 +23,7 @@ __all__ = [
     "Detection",
     "Detector",
     "DockGeometry",
+    "Mounting",
     "Track",
     "Tracker",
 ]

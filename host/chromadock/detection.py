@@ -26,15 +26,19 @@ class Background:
 
 @dataclass(frozen=True, slots=True)
 class Marker:
-    """The colour that the dock's LEDs should show now, a pure colour.
+    """The colour that is looked for: a pure colour, which the dock's LEDs should show now.
 
-    ``received_deg``: the hue of the light that markers were found to add, None without; it
-    differs by some tens of degrees where both sides agree, and by more where they do not.
+    ``rgb`` 0..255 and ``hue_deg`` 0..360 are None where there is none to prefer; white has
+    no hue.  ``given``: ``#RRGGBB``, ``white`` or ``any`` where the colour was given beforehand;
+    None where it is worked out from the water's.  ``received_deg``: the hue of the light that
+    markers were found to add, None without, or where all of it clips; it differs by some tens of
+    degrees where both sides agree, and by more where they do not.
     """
 
-    rgb: RGB
-    hue_deg: float
+    rgb: RGB | None
+    hue_deg: float | None
     received_deg: float | None = None
+    given: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,15 +78,16 @@ class Detection:
     """Everything one frame told.  Fields that do not apply are None.
 
     ``state``, ``evidence`` and ``estimates``: see ``look.Found``; ``passed_fraction`` the
-    share of pixels that stand out in the markers' colour, 0..1; ``markers`` maps the dock's
-    marker names to their pixel; ``track`` what all frames so far tell, at this one's time (None
-    where frames are treated alone); ``timing_ms`` milliseconds by stage, with ``total``.
+    share of pixels that stand out in the markers' colour, 0..1; ``observed`` the RGB, 0..255,
+    that the camera should see of a marker, None where that may be any; ``markers`` maps the
+    dock's marker names to their pixel; ``track`` what all frames so far tell, at this one's time
+    (None where frames are treated alone); ``timing_ms`` milliseconds by stage, with ``total``.
     """
 
     state: str
     background: Background
     marker: Marker
-    observed: RGB
+    observed: RGB | None
     passed_fraction: float
     blobs: tuple[Blob, ...] = ()
     markers: dict[str, Point] | None = None
@@ -108,11 +113,12 @@ class Detection:
                 "confidence": _rounded(self.background.confidence, 3),
             },
             "marker": {
-                "rgb": list(self.marker.rgb),
+                "rgb": None if self.marker.rgb is None else list(self.marker.rgb),
                 "hue_deg": _rounded(self.marker.hue_deg, 2),
                 "received_deg": _rounded(self.marker.received_deg, 2),
+                "given": self.marker.given,
             },
-            "observed": {"rgb": list(self.observed)},
+            "observed": {"rgb": None if self.observed is None else list(self.observed)},
             "passed_fraction": _rounded(self.passed_fraction, 6),
             "blobs": [
                 [_rounded(b.x, 2), _rounded(b.y, 2), _rounded(b.radius, 2)] for b in self.blobs

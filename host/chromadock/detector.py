@@ -14,18 +14,19 @@ from numpy.typing import NDArray
 from chromadock import method as contract
 from chromadock.camera import CameraModel
 from chromadock.colour.background import BackgroundColour, background_colour
-from chromadock.colour.hsv import degrees, rgb_from_hsv
+from chromadock.colour.hsv import degrees, nearest_hue
 from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue, observed_colour
 from chromadock.colour.working_image import smooth, working_image
 from chromadock.detection import Background, Detection, Marker
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
-from chromadock.hue_search import GUESS_DECADES, HueSearch
-from chromadock.look import Found, Look, Method
+from chromadock.look import Look, Method
+from chromadock.marker_colour import MarkerColour
+from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.paper.method import PaperMethod
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
-from chromadock.track.attitude import Attitude
+from chromadock.track.attitude import Attitude, expected_if_told
 from chromadock.track.result import Track
 from chromadock.track.tracker import Tracker
 
@@ -38,8 +39,11 @@ METHODS = tuple(_METHODS)
 DEFAULT_METHOD = "robust"
 _TRACKED = frozenset({"robust"})
 """Methods that weigh their evidence and tell how sure a pose is, which a track needs."""
+_MASKED = frozenset({"paper"})
+"""Methods that look at pixels of one colour only."""
+FALLBACK_HUE_DEG = degrees(contract.FALLBACK_HUE)
 
-__all__ = ["DEFAULT_METHOD", "MAPPINGS", "METHODS", "Detector"]
+__all__ = ["DEFAULT_METHOD", "FALLBACK_HUE_DEG", "MAPPINGS", "METHODS", "Detector"]
 
 
 class Detector:
@@ -55,16 +59,24 @@ class Detector:
         One of ``METHODS``.
     mapping
         One of ``MAPPINGS``; the dock must use the same.
+    marker_colour
+        What the markers shine in, where the dock does not choose it by the water:
+        ``#RRGGBB``, ``white`` or ``any``, or the same parsed.  None takes ``dock.colour``; where
+        that is None too, the colour is worked out from the water's by ``mapping``.
+    fallback_hue_deg
+        Of the markers in grey water and at night, 0 .. 359.77; the dock's ``FALLBACK_HUE``
+        must be the same.
     independent
         Treat each frame alone: no rolling mean of the marker colour, no track.
-    tracker
-        With extrinsics or a dock of your own; None takes ``Tracker(dock)`` with method
-        ``robust``, and none with others.
+    mounting
+        How the camera sits in the vehicle and how the dock hangs, for the search and the track;
+        None for an upright camera that looks ahead and a level dock that faces the approach.
 
     Raises
     ------
     ChromadockError
-        Where a name is unknown or the dock has a shape that the method cannot find.
+        Where a name, a colour, a hue or the mounting is none, or the dock has a shape or
+        colour that the method cannot find.
     """
 
     def __init__(
@@ -74,18 +86,29 @@ class Detector:
         method: str = DEFAULT_METHOD,
         mapping: str = contract.DEFAULT_MAPPING_NAME,
         independent: bool = False,
-        tracker: Tracker | None = None,
+        mounting: Mounting | None = None,
+        marker_colour: MarkerColour | str | None = None,
+        fallback_hue_deg: float = FALLBACK_HUE_DEG,
     ) -> None:
         _check_name("method", method, METHODS)
         _check_name("mapping", mapping, MAPPINGS)
         self._camera = camera
         self._mapping = mapping
+        given = dock.colour if marker_colour is None else marker_colour
+        self._given = MarkerColour.parse(given) if isinstance(given, str) else given
+        if method in _MASKED and self._given is not None and self._given.kind == "any":
+            raise ChromadockError(
+                f"method {method} cannot look for markers of any colour: "
+                f"give their colour, or choose method {DEFAULT_METHOD}"
+            )
+        self._fallback_hue = _fallback_hue(fallback_hue_deg)
         self._rolling = None if independent else RollingHue()
         self._method = _METHODS[method](dock)
+        mounting_or_default(mounting)  # refuses what is none
+        self._mounting = mounting
         self._tracker = None
         if method in _TRACKED and not independent:
-            self._tracker = tracker or Tracker(dock)
-        self._hues = HueSearch()
+            self._tracker = Tracker(dock, mounting)
 
     @property
     def mask(self) -> NDArray[np.bool_]:
@@ -95,8 +118,9 @@ class Detector:
     def predicted(self, time_s: float) -> Track | None:
         """The track run on from the newest frame to a time after it, such as now.
 
-        A frame is processed some time after it was taken; this takes the delay out.  None
-        where nothing is tracked: ``independent``, or a method that cannot.
+        A frame is processed some time after it was taken; this takes the delay out.  Any thread
+        may ask, also while another is in ``process``: the answer is by the frames processed so
+        far.  None where nothing is tracked: ``independent``, or a method that cannot.
         """
         return None if self._tracker is None else self._tracker.at(time_s)
 
@@ -111,15 +135,21 @@ class Detector:
         time_s : when it was taken, seconds; any origin, monotonic.  The track does not use a
             frame that is not newer than the last, and starts anew when time goes back by more
             than a second.
-        attitude : the vehicle's when the frame was taken, where it is known, for the track.
+        attitude : the vehicle's when the frame was taken, where it is known: for the track, and
+            so that the search knows how the dock is turned.
 
         Raises
         ------
         ChromadockError
-            For another shape or type, a size that the camera is not calibrated for, or a time
-            that is not finite.
+            For another shape or type, a size that the camera is not calibrated for, a time that
+            is not finite, or an attitude that is none.
         """
         _check_frame(frame_bgr)
+        if attitude is not None and not isinstance(attitude, Attitude):
+            raise ChromadockError(
+                f"attitude is a {type(attitude).__name__}: give Attitude(roll_rad, pitch_rad, "
+                "yaw_rad)"
+            )
         if not math.isfinite(time_s):
             raise ChromadockError(f"time_s is {time_s}: give when the frame was taken, in seconds")
         camera = self._camera or _nominal(frame_bgr.shape[1], frame_bgr.shape[0])
@@ -127,36 +157,29 @@ class Detector:
         watch = Stopwatch()
 
         background = self._background(frame_bgr)
-        hue = marker_hue(background, self._mapping)
-        if self._rolling is not None:
-            hue = self._rolling.add(hue, round(time_s * 1000))
-        marker_rgb = rgb_from_hsv(hue, 255, 255)
-        observed = observed_colour(background.rgb, marker_rgb)
+        hue = self._expected_hue(background, time_s)
+        kind = "hue" if self._given is None else self._given.kind
+        look = Look(frame_bgr, background, hue, camera, colour=kind)
+        marker_rgb = look.marker_rgb
         watch.lap("colour")
 
-        look = Look(frame_bgr, background, hue, camera)
         track = None
         if self._tracker is None:
+            R_expected, R_covariance = expected_if_told(attitude, self._mounting)
+            look = replace(look, R_expected=R_expected, R_covariance=R_covariance)
             found = self._method.find(look, watch)
         else:
-            plan = self._tracker.plan(time_s)
+            plan = self._tracker.plan(time_s, attitude)
             look = replace(
                 look,
-                hue=(hue + self._hues.offset) % contract.HUE_RANGE,
                 priors=plan.priors,
                 everywhere=plan.everywhere,
-                # At a guessed hue three markers would say too little.
-                incomplete=plan.incomplete and not self._hues.offset,
+                incomplete=plan.incomplete,
+                R_expected=plan.R_expected,
+                R_covariance=plan.R_covariance,
             )
             found = self._method.find(look, watch)
-            guessed = self._hues.offset != 0 and not plan.priors
-            if guessed and found.evidence is not None:
-                found = replace(found, evidence=found.evidence - GUESS_DECADES)
             track = self._tracker.update(time_s, plan, found, camera, attitude)
-            self._hues.looked(found.markers is not None, track.pose is not None)
-            if guessed and track.pose is None:
-                # A dock of another colour is one only when several frames agree.
-                found = Found("not_found", found.passed_fraction, found.blobs)
             watch.lap("track")
         return Detection(
             state=found.state,
@@ -167,10 +190,11 @@ class Detector:
             ),
             marker=Marker(
                 marker_rgb,
-                degrees(hue),
+                degrees(hue) if kind == "hue" else None,
                 None if found.hue is None else degrees(found.hue),
+                None if self._given is None else self._given.text,
             ),
-            observed=observed,
+            observed=None if marker_rgb is None else observed_colour(background.rgb, marker_rgb),
             passed_fraction=found.passed_fraction,
             blobs=found.blobs,
             markers=found.markers,
@@ -181,10 +205,18 @@ class Detector:
             timing_ms=watch.stop(),
         )
 
+    def _expected_hue(self, background: BackgroundColour, time_s: float) -> int:
+        """Hue 0..1535 of the markers: as given, or as an adaptive dock shows it now."""
+        if self._given is not None and self._given.hue is not None:
+            return self._given.hue
+        hue = marker_hue(background, self._mapping, self._fallback_hue)
+        return hue if self._rolling is None else self._rolling.add(hue, round(time_s * 1000))
+
     @staticmethod
     def _background(frame_bgr: NDArray[np.uint8]) -> BackgroundColour:
         working_rgb = cv2.cvtColor(working_image(frame_bgr), cv2.COLOR_BGR2RGB)
-        return background_colour(smooth(np.asarray(working_rgb, np.uint8)))
+        smoothed = smooth(np.asarray(working_rgb, np.uint8))
+        return background_colour(smoothed, contract.MIN_VALUE_VEHICLE)
 
 
 # One for all frames of a size: what a method prepares for a camera, it need not prepare again.
@@ -194,6 +226,18 @@ _nominal = lru_cache(maxsize=4)(CameraModel.nominal)
 def _check_name(what: str, name: str, known: tuple[str, ...]) -> None:
     if name not in known:
         raise ChromadockError(f"unknown {what} '{name}': choose one of {', '.join(known)}")
+
+
+def _fallback_hue(hue_deg: float) -> int:
+    """Hue 0..1535 of what a user set."""
+    try:
+        return nearest_hue(hue_deg)
+    except ValueError:
+        most = degrees(contract.HUE_RANGE - 1)
+        raise ChromadockError(
+            f"the fallback hue is {hue_deg:g}: give degrees, 0 .. {most:.2f}, "
+            "the same as the dock's FALLBACK_HUE"
+        ) from None
 
 
 def _check_frame(frame: NDArray[np.uint8]) -> None:

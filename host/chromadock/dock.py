@@ -7,6 +7,7 @@ an approaching vehicle, as that vehicle sees it; metres.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from importlib import resources
 from itertools import combinations
 from pathlib import Path
@@ -17,6 +18,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from chromadock.errors import ChromadockError
+from chromadock.marker_colour import WANTED, MarkerColour
+from chromadock.symmetry import Symmetry, symmetries
 from chromadock.toml_file import read_toml
 from chromadock.validation import place, shown
 
@@ -42,17 +45,22 @@ class DockGeometry:
         Nx3 float64, metres, dock frame, in the order of ``names``.
     source
         What messages call this dock: its file.
+    colour
+        Of lamps that shine in a colour of their own: ``#RRGGBB``, ``white`` or ``any``; None of
+        a dock that chooses it by the water.
 
     Raises
     ------
     ChromadockError
         Fewer than three markers, a repeated name, a number that is not finite, markers
-        that coincide or all lie on one line, a position that cannot be in metres.
+        that coincide or all lie on one line, a position that cannot be in metres, a colour
+        that is none.
     """
 
     names: tuple[str, ...]
     points: NDArray[np.float64]
     source: str = "dock"
+    colour: str | None = None
 
     def __post_init__(self) -> None:
         points = np.array(self.points, dtype=np.float64)
@@ -62,6 +70,22 @@ class DockGeometry:
         fault = _fault(self.names, points)
         if fault:
             raise ChromadockError(f"{self.source}: {fault}")
+        if self.colour is not None:
+            MarkerColour.parse(self.colour, f"{self.source}: colour")
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """(3,) the markers' centroid, metres, dock frame: about it the pose is best known."""
+        return np.asarray(self.points.mean(axis=0), np.float64)
+
+    @cached_property
+    def symmetries(self) -> tuple[Symmetry, ...]:
+        """Turns after which the dock looks the same: see ``symmetry.symmetries``.
+
+        Of the default rectangle the half turn about its normal: what excludes it is that the
+        vehicle is upright.
+        """
+        return symmetries(self.points)
 
     @classmethod
     def default(cls) -> DockGeometry:
@@ -89,17 +113,18 @@ class _Marker(BaseModel):
 
 class _DockFile(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
+    colour: str | None = None
     marker: list[_Marker] = []
 
 
 def _loaded(path: str | Path, source: str) -> DockGeometry:
     content = read_toml(path, "give a TOML file with one [[marker]] for each marker")
     try:
-        markers = _DockFile.model_validate(content).marker
+        file = _DockFile.model_validate(content)
     except ValidationError as error:
         raise ChromadockError(f"{source}: {_explain(error)}") from None
-    points = np.array([m.position for m in markers], dtype=np.float64).reshape(-1, 3)
-    return DockGeometry(tuple(m.name for m in markers), points, source)
+    points = np.array([m.position for m in file.marker], dtype=np.float64).reshape(-1, 3)
+    return DockGeometry(tuple(m.name for m in file.marker), points, source, file.colour)
 
 
 def _explain(error: ValidationError) -> str:
@@ -107,10 +132,14 @@ def _explain(error: ValidationError) -> str:
     fault: Any = error.errors()[0]
     where, of_marker = place(fault["loc"][:3]), len(fault["loc"]) > 1
     if fault["type"] == "extra_forbidden":
-        known = "name and position" if of_marker else "[[marker]]"
+        if of_marker and fault["loc"][-1] == "colour":
+            return f"unknown key {where}: write it once, above the first [[marker]]"
+        known = "name and position" if of_marker else "colour and [[marker]]"
         return f"unknown key {where}: only {known} may stand there"
     if fault["type"] == "missing":
         return f"{where} is missing: each [[marker]] has a name and a position"
+    if where == "colour":
+        return f"colour is {shown(fault['input'])}: give {WANTED}"
     if "position" in fault["loc"]:
         return f"{where} must be three numbers in metres: position = [x, y, z]"
     if "name" in fault["loc"]:

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.colour.background import BackgroundColour
-from chromadock.detection import Blob, Point, Pose
+from chromadock.colour.hsv import rgb_from_hsv
+from chromadock.detection import RGB, Blob, Point, Pose
+from chromadock.marker_colour import ColourKind
 from chromadock.pose import Estimate
 from chromadock.stopwatch import Stopwatch
 
@@ -20,9 +22,15 @@ class Look:
     """One frame, and what is known before it is searched.
 
     ``frame_bgr`` (H, W, 3) uint8 BGR; ``background``: the water's colour in it; ``hue``
-    0..1535: of the markers as they should shine now.  ``priors``: where a track expects the
+    0..1535: of the markers as they should shine now.  ``colour``: whether they have that hue;
+    where it is ``white`` or ``any`` no hue is to be preferred, and ``hue`` is only what an
+    adaptive dock would show here.  ``priors``: where a track expects the
     dock in this frame, each with its information; ``everywhere``: also search where no prior
     has it; ``incomplete``: where no whole dock is found there, one with a marker out will do.
+    ``R_expected`` (3, 3): how the camera should see the dock turned, ``R_camera_dock``, by the
+    camera's mounting and the vehicle's attitude; None where the user told neither, and the
+    camera is taken for upright.  ``R_covariance`` (3, 3), radians squared: of small turns from
+    there about the camera's axes.
     """
 
     frame_bgr: NDArray[np.uint8]
@@ -32,6 +40,16 @@ class Look:
     priors: tuple[Estimate, ...] = ()
     everywhere: bool = True
     incomplete: bool = False
+    R_expected: NDArray[np.float64] | None = None
+    R_covariance: NDArray[np.float64] | None = None
+    colour: ColourKind = "hue"
+
+    @property
+    def marker_rgb(self) -> RGB | None:
+        """The pure colour of the markers, 0..255 a channel; None where it may be any."""
+        if self.colour == "any":
+            return None
+        return (255, 255, 255) if self.colour == "white" else rgb_from_hsv(self.hue, 255, 255)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

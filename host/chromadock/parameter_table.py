@@ -19,7 +19,7 @@ class Parameter(NamedTuple):
 PARAMETERS = (
     Parameter('MAPPING', 0.0, 2.0, 0.0, '', ('ternary', 'complement', 'contrast'), "From the water's hue to the marker's. The vehicle must use the same."),
     Parameter('WINDOW_MS', 100.0, 2000.0, 2000.0, 'ms', (), "Rolling mean of the marker's hue. The vehicle averages over the default."),
-    Parameter('FALLBACK_HUE', 0.0, 359.765625, 120.0, 'deg', (), 'Marker in grey water and at night. The vehicle must use the same.'),
+    Parameter('FALLBACK_HUE', 0.0, 359.765625, 120.0, 'deg', (), 'Marker in grey water and at night. The vehicle must use the same: --fallback-hue.'),
     Parameter('LED_MODE', 0.0, 1.0, 0.0, '', ('auto', 'manual'), 'Manual shows LED_HUE whatever the water is.'),
     Parameter('LED_HUE', 0.0, 359.765625, 0.0, 'deg', (), 'The colour of LED_MODE manual.'),
     Parameter('LED_OFFSET_R', -255.0, 255.0, 0.0, '', (), 'Added to the 8-bit colour before gamma decoding, as in the paper.'),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -82,6 +82,12 @@ class Estimate:
         off = np.concatenate([t - self.t, turn])
         return float(off @ self.information @ off)
 
+    def about(self, origin: NDArray[np.float64]) -> Estimate:
+        """The same pose of a dock frame with its origin at ``origin`` (3,), metres, dock frame."""
+        arm = self.R @ origin
+        back = lever(-arm)
+        return replace(self, t=self.t + arm, information=back.T @ self.information @ back)
+
     def pose(self, alternative: Pose | None = None) -> Pose:
         """The same for a ``Detection``."""
         x, y, z = self.t.tolist()
@@ -107,6 +113,10 @@ class Sighting:
     sigma_px: NDArray[np.float64]
     camera: CameraModel
 
+    def about(self, origin: NDArray[np.float64]) -> Sighting:
+        """The same in a dock frame with its origin at ``origin`` (3,), metres, dock frame."""
+        return replace(self, points_dock=self.points_dock - origin)
+
 
 def estimates(sighting: Sighting) -> tuple[Estimate, ...]:
     """All poses that the markers leave open, the better first.
@@ -117,17 +127,26 @@ def estimates(sighting: Sighting) -> tuple[Estimate, ...]:
     markers fit up to four poses exactly (Gao et al., PAMI 25 (2003) 930): no error ranks
     them, and that comes first which turns the dock's face most squarely to the camera.
 
+    It is the same wherever the dock frame has its origin: the markers' centroid is the origin
+    meanwhile, about which places and turns are about independent.
+
     Returns
     -------
     None, one or two estimates, of three markers up to four; all markers in front of the camera.
     """
+    centre = sighting.points_dock.mean(axis=0)
+    return tuple(pose.about(-centre) for pose in _estimates(sighting.about(centre)))
+
+
+def _estimates(sighting: Sighting) -> tuple[Estimate, ...]:
+    """The same of markers about the origin."""
     if len(sighting.pixels) == 3:
         return _of_three(sighting)
     start = _first_guess(sighting)
-    first = None if start is None else refined(sighting, *start)
+    first = None if start is None else _refined(sighting, *start)
     if first is None:
         return ()
-    second = refined(sighting, _tilted_back(first, sighting.points_dock), first.t)
+    second = _refined(sighting, _tilted_back(first, sighting.points_dock), first.t)
     if second is None or same_rotation(second.R, first.R):
         return (first,)
     better, worse = sorted((first, second), key=lambda estimate: estimate.chi_square)
@@ -137,9 +156,17 @@ def estimates(sighting: Sighting) -> tuple[Estimate, ...]:
 def refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) -> Estimate | None:
     """The minimum of chi-square downhill of a pose, by Levenberg and Marquardt's method.
 
+    Searched about the markers' centroid, so that the origin of the dock frame does not matter.
     None where a marker would be behind the camera, or none is reached in so many rounds: the way
     there leads through poses that hardly fit.
     """
+    centre = sighting.points_dock.mean(axis=0)
+    pose = _refined(sighting.about(centre), R, t + R @ centre)
+    return None if pose is None else pose.about(-centre)
+
+
+def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) -> Estimate | None:
+    """The same of markers about the origin."""
     damping = _FIRST_DAMPING
     now = _Fit.of(sighting, R, t)
     if now is None:
@@ -164,6 +191,15 @@ def refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) 
     off = now.error.reshape(-1, 2) * sighting.sigma_px[:, None]
     reprojection_px = float(np.sqrt((off**2).sum(axis=1).mean()))
     return Estimate(R, t, now.chi_square, reprojection_px, now.jacobian.T @ now.jacobian)
+
+
+def lever(arm: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(6, 6): what errors of a pose (place, small turns about the camera's axes) do to the pose of
+    the same body at a point ``arm`` (3,), metres, camera axes, from its origin."""
+    x, y, z = arm
+    J = np.eye(6)
+    J[:3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]  # turn x arm
+    return J
 
 
 def same_rotation(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
@@ -233,7 +269,7 @@ def _of_three(sighting: Sighting) -> tuple[Estimate, ...]:
     starts += [(_matrix(np.zeros(3)), t) for _, t in starts]
     found: list[Estimate] = []
     for R, t in starts:
-        pose = refined(sighting, R, t)
+        pose = _refined(sighting, R, t)
         if pose is not None and not any(same_rotation(pose.R, other.R) for other in found):
             found.append(pose)
     return tuple(sorted(found, key=lambda pose: -float(np.trace(pose.R))))

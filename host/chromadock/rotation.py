@@ -5,10 +5,77 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from chromadock.errors import ChromadockError
+
+NOT_ORTHONORMAL = 1e-3
+"""Largest element of R^T R - 1 of a matrix that is still a rotation written with few digits: a
+hundredth of a degree more than a mounting can be measured to would be a slip."""
+
+
+def checked_rotation(matrix: ArrayLike, name: str) -> NDArray[np.float64]:
+    """A rotation that a user gave, made orthonormal and read-only.
+
+    Parameters
+    ----------
+    matrix : (3, 3), orthonormal to ``NOT_ORTHONORMAL``, determinant +1.
+    name : what the message calls it.
+
+    Returns
+    -------
+    (3, 3) float64: the nearest rotation (Higham, Matrix Procrustes Problems, 1995: U V^T of the
+    singular value decomposition).
+
+    Raises
+    ------
+    ChromadockError
+        For anything that is not a rotation: one line with the name, what is wrong, the mend.
+    """
+    try:
+        R = np.array(matrix, np.float64)
+    except (TypeError, ValueError):
+        raise ChromadockError(f"{name} is no matrix of numbers: {_MEND}") from None
+    fault = _fault(R)
+    if fault:
+        raise ChromadockError(f"{name} {fault}: {_MEND}")
+    left, _, right = np.linalg.svd(R)
+    nearest = np.asarray(left @ right, np.float64)
+    nearest.setflags(write=False)
+    return nearest
+
+
+_MEND = "give a 3x3 rotation, its columns the unit vectors of one frame's axes in the other frame"
+
+
+def _fault(R: NDArray[np.float64]) -> str | None:
+    """Why an array is no rotation, or None."""
+    if R.shape != (3, 3):
+        return f"has the shape {R.shape}"
+    if not np.isfinite(R).all():
+        return "has a number that is not finite"
+    off = float(np.abs(R.T @ R - np.eye(3)).max())
+    if off > NOT_ORTHONORMAL:
+        lengths = ", ".join(f"{length:.4g}" for length in np.linalg.norm(R, axis=0))
+        return f"is not orthonormal (columns of length {lengths}, R^T R off by {off:.2g})"
+    if np.linalg.det(R) < 0:
+        return "is a reflection (determinant -1, a left-handed frame)"
+    return None
+
 
 def matrix_from_quaternion(q_wxyz: ArrayLike) -> NDArray[np.float64]:
-    """The 3x3 rotation of a quaternion, which need not be of unit length."""
-    w, x, y, z = np.asarray(q_wxyz, dtype=np.float64) / np.linalg.norm(q_wxyz)
+    """The 3x3 rotation of a quaternion (4,), which need not be of unit length.
+
+    Raises
+    ------
+    ChromadockError
+        For another shape, a number that is not finite, or a length of zero.
+    """
+    q = np.asarray(q_wxyz, dtype=np.float64)
+    length = float(np.linalg.norm(q))
+    if q.shape != (4,) or not 0 < length < np.inf:
+        raise ChromadockError(
+            f"quaternion {q.tolist()}: it must be four finite numbers w, x, y, z, not all zero"
+        )
+    w, x, y, z = q / length
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

@@ -123,6 +123,31 @@ def test_without_json_it_is_a_table_and_a_summary(folder):
     assert summary == "3 frames, 0 found, 0 skipped"
 
 
+def test_a_colour_that_is_given_is_looked_for_and_told(folder):
+    (folder / "ring.toml").write_text(
+        'colour = "white"\n'
+        + "".join(f'[[marker]]\nname = "m{n}"\nposition = [{n}, {n * n}, 0]\n' for n in (0, 1, 2))
+    )
+    of_file = detect("in", "--json", "--dock", "ring.toml", cwd=folder)
+    assert json.loads(of_file.stdout.splitlines()[0])["marker"]["given"] == "white"
+    assert of_file.stderr.splitlines()[0] == (
+        "chromadock: looking for markers of colour white, whatever the water is"
+    )
+    flag = detect("in", "--dock", "ring.toml", "--marker-colour", "#0000ff", cwd=folder)
+    assert flag.stderr.splitlines() == [
+        "chromadock: looking for markers of colour #0000FF, hue 240 degrees, whatever the water is"
+    ]
+
+
+def test_the_fallback_hue_can_be_set(folder):
+    cv2.imwrite(str(folder / "grey.png"), np.full((480, 640, 3), 120, np.uint8))
+    marker = [
+        json.loads(detect("grey.png", "--json", *options, cwd=folder).stdout)["marker"]
+        for options in ((), ("--fallback-hue", "300"))
+    ]
+    assert [m["hue_deg"] for m in marker] == [120.0, 300.0]
+
+
 def test_the_dock_is_found_with_and_without_a_calibration(folder):
     cv2.imwrite(str(folder / "dock.png"), dock_frame())
     (folder / "cam.yaml").write_text(CAMERA.format(width=640, height=480, f=1024))
@@ -236,6 +261,11 @@ def test_a_corrupt_picture_is_reported_skipped_and_counted(folder):
         (["broken.png"], "broken.png: not a whole picture"),
         (["97"], "camera 97: does not open: check"),
         (["in", "--mapping", "rainbow"], "'rainbow': choose one of ternary, complement, contrast"),
+        (["in", "--marker-colour", "bleu"], "--marker-colour is 'bleu': give \"#RRGGBB\""),
+        (["in", "--dock", "navy.toml"], "navy.toml: colour is 'navy': give \"#RRGGBB\""),
+        (["in", "--marker-colour", "any", "--method", "paper"], "method paper cannot look for"),
+        (["in", "--fallback-hue", "360"], "fallback hue is 360: give degrees, 0 .. 359.77"),
+        (["in", "--fallback-hue", "green"], "--fallback-hue"),
         (["in", "--method", "magic"], "'magic': choose one of robust, paper"),
         (["in", "--fps", "0"], "--fps is 0: it must be a positive number"),
         (["in", "--fps", "many"], "--fps"),
@@ -268,6 +298,7 @@ def test_bad_input_is_refused_in_one_line_that_tells_the_mend(folder, arguments,
     marker = '[[marker]]\nname = "{}"\nposition = [{}, {}, 0]\n'
     two = marker.format("a", 0, 0) + marker.format("b", 1, 0)
     (folder / "two.toml").write_text(two)
+    (folder / "navy.toml").write_text('colour = "navy"\n' + two + marker.format("c", 0, 1))
     (folder / "twice.toml").write_text(two + marker.format("a", 0, 1))
     (folder / "nan.toml").write_text(two + marker.format("c", 0, "nan"))
     before = listed(folder)

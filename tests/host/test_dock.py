@@ -46,6 +46,16 @@ def test_the_packaged_file_is_an_example_that_loads(load):
     assert np.array_equal(load(text).points, DockGeometry.default().points)
 
 
+def test_a_dock_file_may_have_the_colour_of_its_lamps(load):
+    assert load(dock_text(THREE.items())).colour is None
+    assert load("colour = '#0000ff'\n" + dock_text(THREE.items())).colour == "#0000ff"
+
+
+def test_the_packaged_files_colour_is_an_example_that_loads(load):
+    text = resources.files("chromadock").joinpath("default_dock.toml").read_text()
+    assert load(text.replace("# colour =", "colour =")).colour == "#0000FF"
+
+
 def test_three_markers_out_of_plane_and_whole_numbers_are_a_dock(load):
     dock = load(dock_text(THREE.items()))
     assert dock.names == ("a", "b", "c")
@@ -86,7 +96,13 @@ def test_markers_that_make_no_dock_are_refused_in_one_line(load, markers, says):
     [
         ("[[marker]\n", "not valid TOML"),
         ("units = 'm'\n" + dock_text(THREE.items()), "unknown key units"),
-        (dock_text(THREE.items()) + "\ncolour = 'red'", "unknown key marker 3: colour"),
+        (
+            dock_text(THREE.items()) + "\ncolour = '#FF0000'",
+            "unknown key marker 3: colour: write it once, above the first [[marker]]",
+        ),
+        ("colour = 'red'\n" + dock_text(THREE.items()), "colour is 'red': give \"#RRGGBB\""),
+        ("colour = 255\n" + dock_text(THREE.items()), 'colour is 255: give "#RRGGBB"'),
+        ("color = 'white'\n" + dock_text(THREE.items()), "color: only colour and [[marker]]"),
         ("[[marker]]\nposition = [0, 0, 0]", "marker 1: name is missing"),
         ("[[marker]]\nname = 'a'", "marker 1: position is missing"),
         ("[[marker]]\nname = 7\nposition = [0, 0, 0]", "marker 1: name is 7"),

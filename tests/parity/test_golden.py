@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from comparison import assert_same, c_decision, numpy_decision, of_hue
 
+from chromadock import method
+from chromadock.colour.background import background_colour
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
 from chromadock_firmware import Dock, Settings, ffi, lib
@@ -36,6 +38,23 @@ def test_every_intermediate_value_of_the_golden_frames(golden: dict[str, Any], d
         colour = record["background"]
         rgb = rgb_from_hsv(colour["hue"], colour["saturation"], colour["value"])
         assert list(rgb) == colour["rgb"]
+
+
+def test_the_vehicle_decides_on_the_golden_frames_by_its_own_darkness(
+    golden: dict[str, Any],
+) -> None:
+    apart = set()
+    for record in golden["frames"]:
+        pixels = golden["pixels"][record["smoothed_at"] :][: 60 * 80 * 3]
+        smoothed = np.frombuffer(pixels, np.uint8).reshape(60, 80, 3)
+        seen = background_colour(smoothed, method.MIN_VALUE_VEHICLE)
+        assert seen.meaningful is record["vehicle"]["meaningful"], record["name"]
+        hue = marker_hue(seen, record["mapping"])
+        assert hue == record["vehicle"]["marker_hue"], record["name"]
+        assert hue == record["marker_hue"] or seen.value < method.MIN_VALUE_VEHICLE
+        if seen.meaningful is not record["background"]["meaningful"]:
+            apart.add(record["name"])
+    assert apart == {"value_16", "value_47", "lamps_glow"}
 
 
 def test_rolling_mean_in_numpy_and_c(golden: dict[str, Any]) -> None:

@@ -81,7 +81,7 @@ def _print_table(records: Sequence[Record]) -> None:
             f"{r.time_s:.1f} s",
             _or_dash(water, "{:.0f}°"),
             f"{r.dock_hue_deg:.0f}°",
-            f"{r.detection.marker.hue_deg:.0f}°",
+            _or_dash(r.detection.marker.hue_deg, "{:.0f}°"),
             f"{r.true_range_m:.2f} m",
             _or_dash(r.range_m, "{:.2f} m"),
             _or_dash(r.position_error_m, "{:.3f} m"),

@@ -10,9 +10,10 @@ import typer
 
 from chromadock.camera import CameraModel
 from chromadock.cli.report import Report
-from chromadock.detector import DEFAULT_METHOD, MAPPINGS, METHODS, Detector
+from chromadock.detector import DEFAULT_METHOD, FALLBACK_HUE_DEG, MAPPINGS, METHODS, Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
+from chromadock.marker_colour import MarkerColour
 from chromadock.method import DEFAULT_MAPPING_NAME
 from chromadock.output import OverlayOutput, open_overlay
 from chromadock.overlay import draw_overlay
@@ -48,6 +49,21 @@ def detect(
         str,
         typer.Option(help=f"From water to marker colour, as in the dock: {', '.join(MAPPINGS)}."),
     ] = DEFAULT_MAPPING_NAME,
+    marker_colour: Annotated[
+        str | None,
+        typer.Option(
+            metavar='"#RRGGBB"|white|any',
+            help="Of lamps that have a colour of their own, whatever the water is.",
+            show_default="the dock file's, or by the water",
+        ),
+    ] = None,
+    fallback_hue: Annotated[
+        float,
+        typer.Option(
+            metavar="DEG",
+            help="Marker hue in grey water and at night: the dock's FALLBACK_HUE.",
+        ),
+    ] = FALLBACK_HUE_DEG,
     independent: Annotated[
         bool,
         typer.Option(
@@ -71,7 +87,15 @@ def detect(
     """
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock)
     model = None if camera is None else CameraModel.from_yaml(camera)
-    detector = Detector(model, geometry, method=method, mapping=mapping, independent=independent)
+    detector = Detector(
+        model,
+        geometry,
+        method=method,
+        mapping=mapping,
+        independent=independent,
+        marker_colour=None if marker_colour is None else _colour(marker_colour),
+        fallback_hue_deg=fallback_hue,
+    )
     with ExitStack() as stack:
         report = Report(json=json, calibrated=model is not None)
         frames = stack.enter_context(open_source(source, fps, report.skipped))
@@ -86,6 +110,10 @@ def detect(
         raise typer.Exit(EXIT_INTERRUPTED)
     if frames.errors:
         raise typer.Exit(EXIT_SKIPPED)
+
+
+def _colour(text: str) -> MarkerColour:
+    return MarkerColour.parse(text, "--marker-colour")
 
 
 def _check_apart(overlay: Path, frames: Source) -> None:

@@ -58,6 +58,8 @@ class Report:
         if detection.pose is not None and not self._calibrated:
             self._calibrated = True  # once is enough
             self._aside("warning: no --camera: a usual lens is assumed, so distances are rough")
+        if detection.marker.given is not None and not self._frames:
+            self._aside(_looked_for(detection.marker))
         if detection.track is not None and detection.track.pose is not None:
             self._compare(detection.marker)
         if self._json:
@@ -75,15 +77,18 @@ class Report:
 
     def _compare(self, marker: Marker) -> None:
         """Say once that the dock is of another colour than expected."""
-        if marker.received_deg is None:
+        if marker.received_deg is None or marker.hue_deg is None:
             return
         self._off.append(np.exp(1j * np.radians(marker.received_deg - marker.hue_deg)))
         if len(self._off) == _COMPARED_FRAMES:
             off_deg = float(np.degrees(np.angle(sum(self._off))))
             if abs(off_deg) > _DISAGREEMENT_DEG:
+                said, mend = "what this camera's water says", "on both cameras"
+                if marker.given is not None:
+                    said, mend = marker.given, "on this camera, or correct the dock's colour"
                 self._aside(
-                    f"warning: the dock's light is {off_deg:+.0f} degrees of hue from what this "
-                    "camera's water says: lock white balance and gain on both cameras"
+                    f"warning: the dock's light is {off_deg:+.0f} degrees of hue from {said}: "
+                    f"lock white balance and gain {mend}"
                 )
 
     def skipped(self, line: str) -> None:
@@ -141,6 +146,16 @@ class Report:
     def _above_bar(self, line: str) -> None:
         assert self._bar is not None
         self._bar.console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def _looked_for(marker: Marker) -> str:
+    """The colour that was given beforehand."""
+    if marker.hue_deg is None:
+        return f"looking for markers of colour {marker.given}, whatever the water is"
+    return (
+        f"looking for markers of colour {marker.given}, hue {marker.hue_deg:.0f} degrees, "
+        "whatever the water is"
+    )
 
 
 def _row(frame: Frame, detection: Detection) -> str:

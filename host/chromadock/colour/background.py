@@ -18,7 +18,8 @@ class BackgroundColour:
 
     Hue 0..1535; saturation, value, resultant (mean hue vector's length), share
     (of the image) and confidence (the product of both) 0..255; ``meaningful`` is
-    False for grey water, night or a mixture of hues.
+    False for grey water, night or a mixture of hues: the only one that differs from dock to
+    vehicle.
     """
 
     bin_counts: tuple[int, ...]
@@ -55,8 +56,17 @@ def grey_range(bin: int) -> tuple[int, int]:
     return first, after - 1
 
 
-def background_colour(image: NDArray[np.uint8]) -> BackgroundColour:
-    """The background of a smoothed working image, (60, 80, 3) uint8 RGB."""
+def background_colour(
+    image: NDArray[np.uint8], min_value: int = method.MIN_VALUE
+) -> BackgroundColour:
+    """The background of a smoothed working image.
+
+    Parameters
+    ----------
+    image : (60, 80, 3) uint8 RGB.
+    min_value : 0..255; a darker background means nothing.  The dock's unless given; the
+        vehicle's, which sees the lamps glow, is ``method.MIN_VALUE_VEHICLE``.
+    """
     bins = grey_bins(image)
     counts = np.bincount(bins.ravel(), minlength=method.GREY_BINS)
     fullest = int(np.argmax(counts))  # the first of equals: ties go to the darker
@@ -88,7 +98,7 @@ def background_colour(image: NDArray[np.uint8]) -> BackgroundColour:
         share=share,
         confidence=(resultant * share + 127) // 255,
         meaningful=mean_saturation >= method.MIN_SATURATION
-        and mean_value >= method.MIN_VALUE
+        and mean_value >= min_value
         and resultant >= method.MIN_RESULTANT,
     )
 

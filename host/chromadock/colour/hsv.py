@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -96,3 +98,16 @@ def hue_of_vector(x: int, y: int) -> int | None:
 def degrees(hue: int) -> float:
     """Hue steps to degrees, 0..360."""
     return hue * 360.0 / method.HUE_RANGE
+
+
+def nearest_hue(hue_deg: float) -> int:
+    """Degrees to the nearest step, halves up, as the dock rounds its parameters.
+
+    ``ValueError`` where that is none of 0..1535: below 0, from 359.883 on, or not finite.
+    """
+    if not 0 <= hue_deg < 360:
+        raise ValueError(f"no hue: {hue_deg}")
+    hue = math.floor(hue_deg * method.HUE_RANGE / 360.0 + 0.5)
+    if hue >= method.HUE_RANGE:
+        raise ValueError(f"no hue: {hue_deg}")
+    return hue

@@ -52,15 +52,13 @@ def _colours(axes: Axes, records: Sequence[Record]) -> None:
 def _hues(axes: Axes, records: Sequence[Record]) -> None:
     for number, dive in enumerate(_dives(records)):
         times = [r.time_s for r in dive]
-        water = [r.detection.background.hue_deg for r in dive]
-        known = [np.nan if h is None else h for h in water]
-        vehicle = [r.detection.marker.hue_deg for r in dive]
         for values, colour, style, label in (
-            (known, "teal", "-", "water"),
+            ([r.detection.background.hue_deg for r in dive], "teal", "-", "water"),
             ([r.dock_hue_deg for r in dive], "crimson", "-", "dock's LEDs"),
-            (vehicle, "black", "--", "vehicle expects"),
+            ([r.detection.marker.hue_deg for r in dive], "black", "--", "vehicle expects"),
         ):
-            axes.plot(times, values, style, color=colour, label=label if number == 0 else None)
+            known = [np.nan if hue is None else hue for hue in values]
+            axes.plot(times, known, style, color=colour, label=label if number == 0 else None)
     axes.set(ylabel="hue [deg]", xlim=(0, records[-1].time_s))
     axes.legend(loc="center left", fontsize=9)
     axes.grid(alpha=0.3)

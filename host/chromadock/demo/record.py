@@ -73,7 +73,9 @@ class Record:
     @property
     def hue_disagreement_deg(self) -> float:
         """How far dock and vehicle are apart on the marker's hue."""
-        apart = abs(self.dock_hue_deg - self.detection.marker.hue_deg) % 360
+        expected_deg = self.detection.marker.hue_deg
+        assert expected_deg is not None, "the demo's vehicle expects a hue"
+        apart = abs(self.dock_hue_deg - expected_deg) % 360
         return min(apart, 360 - apart)
 
     def to_dict(self) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 from cv2.typing import MatLike
 from numpy.typing import NDArray
 
+from chromadock import method
 from chromadock.colour.background import BackgroundColour, background_colour
 from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
 from chromadock.colour.working_image import smooth, working_image
@@ -42,7 +43,7 @@ class Vehicle:
     ) -> tuple[BackgroundColour, dict[str, int]]:
         """Water's colour and rolling mean of the marker's hue, as ``Detector`` finds them."""
         small_rgb = np.ascontiguousarray(working_image(frame_bgr)[..., ::-1])
-        background = background_colour(smooth(small_rgb))
+        background = background_colour(smooth(small_rgb), method.MIN_VALUE_VEHICLE)
         now_ms = round(time_s * 1000)
         hues = {
             mapping: rolling.add(marker_hue(background, mapping), now_ms)

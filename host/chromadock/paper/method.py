@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.colour.marker import observed_colour
 from chromadock.detection import Blob
 from chromadock.dock import DockGeometry
@@ -29,7 +28,9 @@ class PaperMethod:
 
     def find(self, look: Look, watch: Stopwatch) -> Found:
         """Look for the dock in one frame, everywhere: no prior is used."""
-        observed = observed_colour(look.background.rgb, rgb_from_hsv(look.hue, 255, 255))
+        marker_rgb = look.marker_rgb
+        assert marker_rgb is not None, "a mask needs a colour"
+        observed = observed_colour(look.background.rgb, marker_rgb)
         mask = colour_mask(look.frame_bgr, observed)
         self.mask = mask & foreground(look.frame_bgr, look.background.bin)
         watch.lap("mask")

@@ -24,7 +24,7 @@ no more docks, and measuring is the dearest step."""
 PLACE_TOLERANCE = 0.05
 """Of the range: a pose whose place is farther off is wrong."""
 
-MOST_DOUBT = 0.1
+MOST_DOUBT = 0.15
 """Probability that a pose is wrong, beyond which it is not told."""
 
 

@@ -45,14 +45,19 @@ class Incomplete:
                 self._parts.append(_Part(markers, ShapeModel.learn(points[markers], camera)))
         self._searches: dict[int, list[Search]] = {}
 
-    def find(self, cell: int, peaks: Peaks, sigma_px: float, least: float) -> Guess | None:
-        """The best set at one scale, if its evidence is ``least`` or more and not AMBIGUOUS."""
+    def find(
+        self, cell: int, peaks: Peaks, sigma_px: float, least: float, upright: complex
+    ) -> Guess | None:
+        """The best set at one scale, if its evidence is ``least`` or more and not AMBIGUOUS.
+
+        ``upright``: see ``view.View.candidates``.
+        """
         if not self._parts or len(peaks.snr) < len(self._parts) - 1:
             return None
         if cell not in self._searches:
             self._searches[cell] = [Search(p.model, sigma_px, self._area) for p in self._parts]
         rarely = float(np.log(HIDDEN / len(self._parts)))
-        places = ideal(peaks.xy, self._camera)
+        places = ideal(peaks.xy, self._camera) * upright
         guesses: list[Guess] = []
         for part, search in zip(self._parts, self._searches[cell], strict=True):
             found = search.find(places, peaks, least - rarely - AMBIGUOUS)

@@ -61,8 +61,6 @@ class Peaks:
     promising: NDArray[np.intp]
 
 
-
-
 def find_peaks(response: Response) -> dict[int, Peaks]:
     """Local maxima that a lamp may have made, MAX_PEAKS at most of each scale; by its cells."""
     layout, snr, stride = response.layout, response.snr, response.layout.shape[1]

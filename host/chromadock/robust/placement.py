@@ -10,12 +10,12 @@ less likely, and that is all.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.camera import CameraModel
 from chromadock.pose import Estimate, Sighting, projected
 
 Real = NDArray[np.float64]
@@ -26,29 +26,35 @@ that is some per cent off, a lens that the calibration describes badly, a rollin
 shutter on a moving vehicle.  Each is as likely as the other."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class PosePrior:
     """What is known of a dock's pose before the frame is seen.
 
     Its bearing is anywhere in the picture, its range anywhere on a logarithmic scale that spans
-    ``log_ranges`` e-foldings; its attitude is normal about ``R_expected`` (3, 3), with standard
-    deviations ``attitude_rad`` (3,) of turns about the camera's axes.
+    ``log_ranges`` e-foldings; its attitude is normal about ``R_expected`` (3, 3), with the
+    covariance ``R_covariance`` (3, 3), radians squared, of turns about the camera's axes.
     """
 
-    camera: CameraModel
-    area_px: float
     focal_px: float
+    area_px: float
     log_ranges: float
     R_expected: Real
-    attitude_rad: Real
+    R_covariance: Real
+
+    @cached_property
+    def R_information(self) -> Real:
+        """(3, 3): the inverse of the covariance."""
+        return np.asarray(np.linalg.inv(self.R_covariance))
 
     def log_density(self, R: Real, t: Real) -> float:
         """Of a pose, a cubic metre and cubic radian."""
         # A volume of z^3 / f^2 lies behind each square pixel and e-folding of range.
-        place = 2 * np.log(self.focal_px) - 3 * np.log(t[2]) - np.log(self.area_px * self.log_ranges)
-        turn = cv2.Rodrigues(R @ self.R_expected.T)[0].ravel() / self.attitude_rad
-        norm = np.log(self.attitude_rad).sum() + 1.5 * np.log(2 * np.pi)
-        return float(place - 0.5 * turn @ turn - norm)
+        place = (
+            2 * np.log(self.focal_px) - 3 * np.log(t[2]) - np.log(self.area_px * self.log_ranges)
+        )
+        turn = cv2.Rodrigues(R @ self.R_expected.T)[0].ravel()
+        norm = 0.5 * np.linalg.slogdet(2 * np.pi * self.R_covariance)[1]
+        return float(place - 0.5 * turn @ self.R_information @ turn - norm)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -81,7 +87,7 @@ def _of_pose(sighting: Sighting, pose: Estimate, prior: PosePrior, variances: Re
     pixels, jacobian = seen
     square = ((pixels - sighting.pixels) ** 2).sum(axis=1)
     known = np.einsum("nki,nkj,mn->mij", jacobian, jacobian, 1 / variances)
-    known[:, 3:, 3:] += np.diag(1 / prior.attitude_rad**2)
+    known[:, 3:, 3:] += prior.R_information
     known[:, :3, :3] += np.eye(3) / pose.t[2] ** 2
     fit = -0.5 * (square / variances).sum(axis=1) - np.log(2 * np.pi * variances).sum(axis=1)
     volume = 3 * np.log(2 * np.pi) - 0.5 * np.linalg.slogdet(known)[1]

@@ -17,25 +17,44 @@ _PURE = linear(np.array([[rgb_from_hsv(int(h), 255, 255)[::-1] for h in _HUES]],
 # Cells about a marker whose light is a lamp's: 5 x 5.
 _NEAR = np.mgrid[-2:3, -2:3].reshape(2, 1, -1)
 _CLIPPED = 0.7  # of full scale: the mean of a cell with a clipped pixel is below 1
+# Mean of unclipped cells beside clipped ones, in standard deviations: what is so near to a lamp
+# that it clips is lit by it, so that less is not its light.
+_LEAST_SNR = 3.0
 
 
-def received_hue(response: Response, xy: NDArray[np.float64]) -> int:
+def received_hue(response: Response, xy: NDArray[np.float64]) -> int | None:
     """Hue 0..1535 whose matched filter answers most to the light that markers at ``xy`` add.
 
     Parameters
     ----------
     xy : (n, 2) pixels.
 
-    A clipped core has lost its hue, so the halo beside it is looked at.  The water between and
-    the camera's crosstalk turn the hue by some tens of degrees; see docs/robust.md.
+    A clipped core has lost its hue, so the halo beside it is looked at, farther out in coarser
+    cells where all that is near clips; None where nothing unclipped is left that adds light.  The
+    water between and the camera's crosstalk turn the hue by some tens of degrees; see
+    docs/robust.md.
     """
-    height, width = response.layout.shapes[0]
-    across, down = np.floor((xy + 0.5) / response.layout.cells[0]).astype(np.intp).T
+    for scale in range(len(response.layout.cells)):
+        hue = _at_scale(response, xy, scale)
+        if hue is not None:
+            return hue
+    return None
+
+
+def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | None:
+    """The same by the cells of one scale."""
+    height, width = response.layout.shapes[scale]
+    across, down = np.floor((xy + 0.5) / response.layout.cells[scale]).astype(np.intp).T
     column = np.clip(across[:, None] + _NEAR[0], 0, width - 1)
     row = np.clip(down[:, None] + _NEAR[1], 0, height - 1)
-    at = response.layout.at(0, row, column).ravel()
-    added = gained(response, at)
+    at = response.layout.at(scale, row, column).ravel()
     whole = response.light.reshape(-1, 3)[at].max(axis=1) < _CLIPPED
+    if not whole.any():
+        return None
+    added = gained(response, at)[whole].sum(axis=0)
     whitened = np.linalg.solve(response.covariance, _PURE.T.astype(np.float64))
-    answer = (added[whole].sum(axis=0) @ whitened) / np.sqrt((_PURE.T * whitened).sum(axis=0))
-    return int(_HUES[answer.argmax()])
+    answer = (added @ whitened) / np.sqrt((_PURE.T * whitened).sum(axis=0))
+    best = int(answer.argmax())
+    # The noise of cells of the finest scale; that of coarser ones is no more.
+    sure = whole.all() or answer[best] >= _LEAST_SNR * np.count_nonzero(whole)
+    return int(_HUES[best]) if sure else None

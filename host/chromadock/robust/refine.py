@@ -99,7 +99,7 @@ def refined(
     frame_bgr : (H, W, 3) uint8.
     xy : (n, 2) pixels, about where they are.
     cell : pixels, of the scale they were found at.
-    weights : (n, 3), of the response's filters that which answers most at each.
+    weights : (1, 3), of the response's filters that which the lamps answer most.
     noise : (n,) standard deviation of the filtered light of cells about each.
 
     Returns
@@ -109,7 +109,7 @@ def refined(
     step = max(cell // FINE_CELL, 1)
     patches: dict[int, _Patch] = {}
     for lamps, spacing in _by_spacing(xy):
-        cut = _patches(frame_bgr, xy[lamps], step, weights[lamps], spacing / step)
+        cut = _patches(frame_bgr, xy[lamps], step, weights, spacing / step)
         patches.update(zip(lamps, cut, strict=True))
     found = []
     for lamp, spread in enumerate(noise.tolist()):
@@ -194,7 +194,7 @@ def _patches(
     side = 2 * around + 1
     corners = np.rint(xy).astype(np.intp) - side * step // 2
     cuts = [_cut(frame_bgr, left, top, side * step) for left, top in corners.tolist()]
-    light = np.concatenate([_shining(cut, w[None]) for cut, w in zip(cuts, weights, strict=True)])
+    light = _shining(np.concatenate(cuts), weights)
     if step > 1:
         size = (side, side * len(xy))
         light = np.asarray(cv2.resize(light, size, interpolation=cv2.INTER_AREA), np.float32)

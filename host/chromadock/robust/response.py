@@ -114,13 +114,16 @@ def filtered(light: NDArray[np.float32], weights: NDArray[np.float32]) -> NDArra
     return np.asarray(cv2.transform(light, weights), np.float32)
 
 
-def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response:
+def respond(
+    frame_bgr: NDArray[np.uint8], hue: int, focal_px: float, preferred: bool = True
+) -> Response:
     """Filter a frame for lamps, of ``hue`` 0..1535 before all others.
 
     Parameters
     ----------
     frame_bgr : (H, W, 3) uint8, at least MIN_SIDE each way.
     focal_px : focal length; sets the coarsest cells.
+    preferred : whether the lamps are expected to have that hue; if not, all hues count alike.
     """
     height, width = frame_bgr.shape[:2]
     coarsest = min(focal_px * COARSEST_CELL_RAD, min(height, width) / 16)
@@ -135,8 +138,13 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
     weights = _matched_filters(covariance, signatures.astype(np.float64))
     while len(lights) < len(layout.cells):
         lights.append(_halved(lights[-1]))
-    added = [light - _surround(light, cell) for light, cell in zip(lights, layout.cells, strict=True)]
-    answers = [_answers(light, more, weights) for light, more in zip(lights, added, strict=True)]
+    added = [
+        light - _surround(light, cell) for light, cell in zip(lights, layout.cells, strict=True)
+    ]
+    less = UNEXPECTED if preferred else 0.0
+    answers = [
+        _answers(light, more, weights, less) for light, more in zip(lights, added, strict=True)
+    ]
     best = [np.asarray(a.argmax(axis=0), np.uint8) for a in answers]
     return Response(
         weights,
@@ -208,7 +216,10 @@ def _across(covariance: NDArray[np.float64], signature: NDArray[np.float64]) -> 
 
 
 def _answers(
-    light: NDArray[np.float32], added: NDArray[np.float32], weights: NDArray[np.float32]
+    light: NDArray[np.float32],
+    added: NDArray[np.float32],
+    weights: NDArray[np.float32],
+    less: float,
 ) -> NDArray[np.float32]:
     """(HUES, h, w): what cells add, filtered, over its local fluctuation.
 
@@ -224,7 +235,7 @@ def _answers(
         answers[:, clipped] = np.maximum(weights, 0) @ planes[:, clipped]
     answers = answers.reshape(-1, height, width)
     for k, answer in enumerate(answers):
-        answers[k] = _against_noise(answer) - (UNEXPECTED if k else 0)
+        answers[k] = _against_noise(answer) - (less if k else 0)
     return np.asarray(answers, np.float32)
 
 

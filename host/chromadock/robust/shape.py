@@ -128,7 +128,6 @@ class ShapeModel:
             -0.5 * angle**2 - np.log(spread * np.sqrt(2 * np.pi)) - 2 * np.log(np.abs(base))
         )
 
-
     def log_shape(self, z: Complex, sigma_px: Real) -> Real:
         """(N,) log density of sets of markers at ``z`` (N, n), known to ``sigma_px`` (N, n),
         given their bases: in square pixels to the power n - 2; both in the shape's order.

@@ -10,14 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.errors import ChromadockError
+from chromadock.mounting import R_BODY_CAMERA_FORWARD, Mounting, mounting_or_default
 from chromadock.robust.shape import ATTITUDE_RAD
 
 Floats = NDArray[np.float64]
-
-R_BODY_CAMERA_FORWARD = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-"""Camera axes in the body's for a camera that looks ahead: its x is the body's y (right), its y
-the body's z (down), its z the body's x (forward)."""
-
 
 LEVEL_RAD = 0.06
 """Error of the dock's pitch and roll as the vehicle's attitude has them, for a dock that should be
@@ -35,7 +31,8 @@ class Attitude:
     Raises
     ------
     ChromadockError
-        For a number that is not finite.
+        For a number that is not finite, or a roll or pitch beyond a full turn, which must be in
+        degrees.
     """
 
     roll_rad: float
@@ -48,6 +45,11 @@ class Attitude:
             raise ChromadockError(
                 f"attitude {given}: roll, pitch and yaw must be finite, in radians; "
                 "leave the attitude out where it is not known"
+            )
+        if max(abs(self.roll_rad), abs(self.pitch_rad)) > 2 * math.pi:
+            raise ChromadockError(
+                f"attitude {given}: a roll or pitch of more than a full turn; "
+                "give radians, not degrees"
             )
 
     @property
@@ -71,27 +73,30 @@ class Attitude:
         return np.asarray(cv2.Rodrigues(R_then_now)[0], np.float64).ravel()
 
 
-def expected(
-    attitude: Attitude | None, R_body_camera: Floats, R_level_dock: Floats
-) -> tuple[Floats, Floats]:
-    """How a vehicle that faces the dock sees it turned: R_camera_dock (3, 3), and the (3, 3)
-    covariance of small turns about the camera's axes.
+def expected(attitude: Attitude | None, mounting: Mounting) -> tuple[Floats, Floats]:
+    """How a vehicle that faces the dock sees it turned: ``R_camera_dock`` (3, 3), and the (3, 3)
+    covariance, radians squared, of small turns from there about the camera's axes.
 
     Without an attitude the vehicle swims about level.  Its heading against the dock's axis is
     known to no better than robust/shape.py's ATTITUDE_RAD in either case, as the search takes it.
-
-    Parameters
-    ----------
-    R_body_camera : the camera's axes in the body's.
-    R_level_dock : the dock's axes in those of a dock that hangs level.
     """
     pitch, yaw, roll = ATTITUDE_RAD.tolist()
     tilt = LEVEL_RAD
     if attitude is None:
         attitude, tilt = Attitude(0.0, 0.0), max(pitch, roll)
     R_level_body = Attitude(attitude.roll_rad, attitude.pitch_rad).R_world_body
-    R_camera_level = (R_level_body @ R_body_camera).T
+    R_camera_level = (R_level_body @ mounting.R_body_camera).T
     down = R_camera_level[:, 2]
     about_down = np.outer(down, down)
     covariance = tilt**2 * (np.eye(3) - about_down) + yaw**2 * about_down
-    return R_camera_level @ R_BODY_CAMERA_FORWARD @ R_level_dock, covariance
+    return R_camera_level @ R_BODY_CAMERA_FORWARD @ mounting.R_level_dock, covariance
+
+
+def expected_if_told(
+    attitude: Attitude | None, mounting: Mounting | None
+) -> tuple[Floats | None, Floats | None]:
+    """``expected``, for a search; None, None where the user told neither attitude nor mounting:
+    the search then takes the camera for upright."""
+    if attitude is None and mounting is None:
+        return None, None
+    return expected(attitude, mounting_or_default(mounting))

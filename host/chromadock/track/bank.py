@@ -56,10 +56,15 @@ class Hypothesis:
 class Bank:
     """Hypotheses of one dock, MAX_HYPOTHESES at most; their weights sum to 1.
 
-    The first is the one to go by, mostly the likeliest: see SWITCH_ODDS.
+    The first is the one to go by, mostly the likeliest: see SWITCH_ODDS.  ``log_likelihood`` of
+    all that was taken in since the bank was made or doubted, by all hypotheses together, up to
+    what is the same for each bank; ``misfit``: the largest chi-square over degrees of freedom
+    among that, by the likeliest.
     """
 
     hypotheses: tuple[Hypothesis, ...]
+    log_likelihood: float = 0.0
+    misfit: float = 0.0
 
     @classmethod
     def of(cls, sight: Sight) -> Bank:
@@ -68,16 +73,22 @@ class Bank:
             [_Branch(met(p.R, p.t, p.covariance), -p.chi_square / 2, False) for p in sight.poses]
         )
 
-    def after(self, elapsed_s: float) -> Bank:
-        """The same ``elapsed_s`` >= 0 later, nothing seen meanwhile."""
-        return Bank(tuple(replace(h, state=h.state.after(elapsed_s)) for h in self.hypotheses))
+    def about(self, origin: Floats) -> Bank:
+        """The same by a dock frame with its origin at ``origin`` (3,), metres, dock frame."""
+        return Bank(tuple(replace(h, state=h.state.about(origin)) for h in self.hypotheses))
+
+    def after(self, elapsed_s: float, swift: float = 0.0) -> Bank:
+        """The same ``elapsed_s`` >= 0 later, nothing seen meanwhile, of a vehicle that manoeuvres
+        with probability ``swift``."""
+        moved = tuple(replace(h, state=h.state.after(elapsed_s, swift)) for h in self.hypotheses)
+        return replace(self, hypotheses=moved)
 
     def seen(self, sight: Sight) -> Bank | None:
         """After a frame; None where that is no place for this dock to be: beyond the gate."""
         branches: list[_Branch] = []
         for i, h in enumerate(self.hypotheses):
             branches += [_branch(h, f, first=i == 0) for f in _modes(h.state, sight)]
-        return _bank(branches) if branches else None
+        return self._then(_bank(branches)) if branches else None
 
     def doubting(self, sight: Sight) -> Bank:
         """With the poses of a frame that it is far from, moving as its first does: REBORN."""
@@ -90,19 +101,28 @@ class Bank:
             if all(_distance(anew, h.state) > _FAR for h in self.hypotheses):
                 less = (pose.chi_square - sight.poses[0].chi_square) / 2
                 branches.append(_Branch(anew, float(np.log(REBORN)) - less, False))
-        return _bank(branches)
+        return replace(_bank(branches), log_likelihood=0.0)
 
     def facing(self, R_expected: Floats, covariance: Floats) -> Bank:
         """After the vehicle told how it should see the dock turned: see ``with_attitude``."""
         return self._told(lambda state: with_attitude(state, R_expected, covariance))
 
-    def turning(self, turn_rate: Floats) -> Bank:
-        """After the vehicle told at which rate (3,) rad/s its camera turns."""
-        return self._told(lambda state: with_turn_rate(state, turn_rate))
+    def turning(self, turn_rate: Floats, variance: float, strayed: float) -> Bank:
+        """After the vehicle told at which rate (3,) rad/s its camera turns: see
+        ``with_turn_rate``; its own rate may have changed meanwhile with variance ``strayed``."""
+        return self._told(lambda state: with_turn_rate(state.strayed(strayed), turn_rate, variance))
 
     def _told(self, fuse: Callable[[State], Fused]) -> Bank:
-        return _bank(
-            [_branch(h, fuse(h.state), first=i == 0) for i, h in enumerate(self.hypotheses)]
+        return self._then(
+            _bank([_branch(h, fuse(h.state), first=i == 0) for i, h in enumerate(self.hypotheses)])
+        )
+
+    def _then(self, after: Bank) -> Bank:
+        """``after`` one more thing was taken in."""
+        return replace(
+            after,
+            log_likelihood=self.log_likelihood + after.log_likelihood,
+            misfit=max(self.misfit, after.misfit),
         )
 
 
@@ -113,6 +133,7 @@ class _Branch:
     state: State
     log_weight: float
     first: bool
+    misfit: float = 0.0
 
 
 def _modes(state: State, sight: Sight) -> list[Fused]:
@@ -129,7 +150,8 @@ def _modes(state: State, sight: Sight) -> list[Fused]:
 
 
 def _branch(h: Hypothesis, fused: Fused, first: bool) -> _Branch:
-    return _Branch(fused.state, float(np.log(h.weight)) + fused.log_likelihood, first)
+    log_weight = float(np.log(h.weight)) + fused.log_likelihood
+    return _Branch(fused.state, log_weight, first, fused.chi_square / fused.freedom)
 
 
 def _bank(branches: list[_Branch]) -> Bank:
@@ -147,8 +169,12 @@ def _bank(branches: list[_Branch]) -> Bank:
     kept = sorted(kept, key=lambda b: -b.log_weight)[:MAX_HYPOTHESES]
     kept.sort(key=lambda b: -b.log_weight - (np.log(SWITCH_ODDS) if b.first else 0.0))
     weights = np.exp([b.log_weight - most for b in kept])
-    weights /= weights.sum()
-    return Bank(tuple(Hypothesis(b.state, float(w)) for b, w in zip(kept, weights, strict=True)))
+    total = float(weights.sum())
+    return Bank(
+        tuple(Hypothesis(b.state, float(w / total)) for b, w in zip(kept, weights, strict=True)),
+        most + float(np.log(total)),
+        max(branches, key=lambda b: b.log_weight).misfit,
+    )
 
 
 def _off(a: State, b: State) -> Floats:

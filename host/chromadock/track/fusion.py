@@ -12,9 +12,6 @@ from chromadock.track.motion import ATTITUDE, POSE, RATE, State, rotation, turn_
 
 Floats = NDArray[np.float64]
 
-GYRO = 0.02
-"""Error of a turn rate from two attitudes a frame apart, rad/s: 0.1 degrees each, at 10 Hz."""
-
 # Rounds of Gauss and Newton; from a frame's own minimum or the prediction two or three suffice.
 _MAX_ROUNDS = 6
 # A step of less than a thirtieth of the error ends them.
@@ -92,9 +89,9 @@ def with_attitude(state: State, R_expected: Floats, covariance: Floats) -> Fused
     return _fused(state, np.eye(12)[ATTITUDE], off, covariance)
 
 
-def with_turn_rate(state: State, turn_rate: Floats) -> Fused:
-    """The camera's rate of turn (3,), rad/s."""
-    return _fused(state, np.eye(12)[RATE], turn_rate - state.turn_rate, GYRO**2 * np.eye(3))
+def with_turn_rate(state: State, turn_rate: Floats, variance: float) -> Fused:
+    """The camera's rate of turn (3,), rad/s, each number known to ``variance``."""
+    return _fused(state, np.eye(12)[RATE], turn_rate - state.turn_rate, variance * np.eye(3))
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -8,11 +8,13 @@ along with its attitude, so what bearings tell of the turn holds for the attitud
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from chromadock.pose import lever
 
 Floats = NDArray[np.float64]
 
@@ -24,6 +26,13 @@ by 0.1 m accelerate it by 0.4 m/s^2."""
 TURNING = 0.3
 """The same of the camera's rate of turn, rad/s^2 per root Hz: waves of 3 s that turn a small
 vehicle by 5 degrees accelerate it by 0.4 rad/s^2."""
+
+SWIFT_ACCELERATION = 1.0
+"""The first of a vehicle that manoeuvres: it stops from 1 m/s within a second."""
+
+SWIFT_TURNING = 2.0
+"""The second: a vehicle that swings by 15 degrees to either side within 1.5 s, at up to 63 degrees
+a second, changes its rate by 1.1 rad/s within 0.4 s."""
 
 DOCK_TURNING = 0.03
 """How the dock itself turns, rad per root s: 1.7 degrees in a second, a dock that bobs by a
@@ -74,8 +83,29 @@ class State:
         covariance[POSE, POSE] = pose_covariance
         return State(R, t, self.velocity, self.turn_rate, covariance)
 
-    def after(self, elapsed_s: float) -> State:
-        """The state ``elapsed_s`` >= 0 later, nothing seen meanwhile."""
+    def strayed(self, variance: float) -> State:
+        """With a turn rate that has changed meanwhile, each of its numbers with ``variance``."""
+        covariance = self.covariance.copy()
+        covariance[RATE, RATE] += variance * np.eye(3)
+        return replace(self, covariance=covariance)
+
+    def about(self, origin: Floats) -> State:
+        """The same dock by a frame with its origin at ``origin`` (3,), metres, dock frame.
+
+        As a rigid body that stands it moves everywhere alike: only place and its errors change.
+        """
+        arm = self.R @ origin
+        J = np.eye(12)
+        J[POSE, POSE] = lever(arm)
+        covariance = J @ self.covariance @ J.T
+        return replace(self, t=self.t + arm, covariance=(covariance + covariance.T) / 2)
+
+    def after(self, elapsed_s: float, swift: float = 0.0) -> State:
+        """The state ``elapsed_s`` >= 0 later, nothing seen meanwhile.
+
+        ``swift`` 0..1: probability that the vehicle manoeuvres; between 0 and 1 the errors have
+        the covariance of both possibilities together.
+        """
         if elapsed_s == 0:
             return self
         turned = rotation(-self.turn_rate * elapsed_s)
@@ -86,7 +116,7 @@ class State:
         F[9:, 9:] = np.eye(3)
         F[:3, 6:9] = turned * elapsed_s
         F[:, 9:] += _of_turning(t, velocity) * elapsed_s
-        covariance = F @ self.covariance @ F.T + _noise(t, velocity, elapsed_s)
+        covariance = F @ self.covariance @ F.T + _noise(t, velocity, elapsed_s, swift)
         return State(turned @ self.R, t, velocity, self.turn_rate, (covariance + covariance.T) / 2)
 
 
@@ -118,12 +148,23 @@ def _of_turning(t: Floats, velocity: Floats) -> Floats:
     return np.vstack([cross_matrix(t), -np.eye(3), cross_matrix(velocity), np.zeros((3, 3))])
 
 
-def _noise(t: Floats, velocity: Floats, elapsed_s: float) -> Floats:
+def acceleration_of(swift: float) -> float:
+    """m/s^2 per root Hz, of a vehicle that manoeuvres with probability ``swift``."""
+    return float(np.sqrt((1 - swift) * ACCELERATION**2 + swift * SWIFT_ACCELERATION**2))
+
+
+def turning_of(swift: float) -> float:
+    """rad/s^2 per root Hz, of a vehicle that manoeuvres with probability ``swift``."""
+    return float(np.sqrt((1 - swift) * TURNING**2 + swift * SWIFT_TURNING**2))
+
+
+def _noise(t: Floats, velocity: Floats, elapsed_s: float, swift: float) -> Floats:
     """(12, 12) what accelerations add meanwhile: integral of G(s) G(s)^T, G(s) = s A + B."""
     A, B = np.zeros((12, 6)), np.zeros((12, 6))
-    A[:3, :3] = B[6:9, :3] = ACCELERATION * np.eye(3)
-    A[:, 3:] = TURNING * _of_turning(t, velocity)
-    B[9:, 3:] = TURNING * np.eye(3)
+    acceleration, turning = acceleration_of(swift), turning_of(swift)
+    A[:3, :3] = B[6:9, :3] = acceleration * np.eye(3)
+    A[:, 3:] = turning * _of_turning(t, velocity)
+    B[9:, 3:] = turning * np.eye(3)
     mixed = A @ B.T
     noise = A @ A.T * (elapsed_s**3 / 3) + (mixed + mixed.T) * (elapsed_s**2 / 2)
     noise += B @ B.T * elapsed_s

@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
 from chromadock.look import Found
-from chromadock.pose import Estimate
-from chromadock.track.attitude import R_BODY_CAMERA_FORWARD, Attitude, expected
+from chromadock.mounting import Mounting, mounting_or_default
+from chromadock.track.attitude import Attitude, expected, expected_if_told
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
-from chromadock.track.motion import POSE
+from chromadock.track.manoeuvre import decided, later
+from chromadock.track.memory import Locked, Memory
+from chromadock.track.motion import turning_of
+from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.result import Track
 from chromadock.track.sight import Sight
-from chromadock.track.states import KEPT_S, TRACKING_S, state_of
+from chromadock.track.states import TRACKING_S
 
 KEEP_EVIDENCE = 2.5
 """Decades, of markers where the track has them: specks there would draw it away, and a frame
 missed costs nothing."""
-
-FULL_SEARCH_S = 0.5
-"""While a dock is tracked the whole frame is searched this often: a wrong lock is left within four
-seconds, and the search costs little on the average."""
-
-INCOMPLETE_SEARCH_S = 0.25
-"""Without a whole dock in sight one with a marker out is searched for this often: it costs as much
-as a whole dock's search for each marker."""
 
 CORRELATION_S = 0.2
 """Frames closer than this share their errors, by the same pixels under a marker and the same
@@ -47,98 +42,46 @@ RESTART_S = 1.0
 """A frame older than the newest by more is the start of another recording: the track begins anew.
 Less is a frame that comes late, which is not used."""
 
-MAX_PRIORS = 2
-"""Poses about which a frame is searched: each costs time."""
-
 MAX_CANDIDATES = 3
 """Docks that are not trusted yet: a true one besides two of clutter."""
-
-R_LEVEL = np.eye(3)
-"""Of a dock that hangs level and faces the approach."""
-
-_LONGEST_ATTITUDE_GAP_S = 0.5  # a mean rate over a longer time is no rate
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """How to look at the next frame: see ``look.Look``."""
-
-    priors: tuple[Estimate, ...] = ()
-    everywhere: bool = True
-    incomplete: bool = False
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Locked:
-    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not."""
-
-    bank: Bank
-    time_s: float
-    measured_s: float
-    whole: bool
 
 
 class Tracker:
     """Follows one dock; time is what its caller says it is.
 
+    The filter's own dock frame has its origin at the markers' centroid, about which errors of
+    place and attitude are about independent, so that it does not matter where the dock's own
+    origin lies; whatever comes in or goes out is of the dock's own frame.
+
     Parameters
     ----------
     dock
         Its markers.
-    R_body_camera
-        (3, 3) extrinsics: the camera's axes in the vehicle's body (FRD); a camera that looks
-        ahead unless given.
-    R_level_dock
-        (3, 3) how the dock hangs at rest: its axes in those of a level dock that faces the
-        approach; the identity for one that does.
+    mounting
+        How the camera sits in the vehicle and how the dock hangs; None for a camera that looks
+        ahead and a dock that hangs level and faces the approach.
     """
 
-    def __init__(
-        self,
-        dock: DockGeometry,
-        R_body_camera: ArrayLike = R_BODY_CAMERA_FORWARD,
-        R_level_dock: ArrayLike = R_LEVEL,
-    ) -> None:
-        self._dock = dock
-        self._R_body_camera = np.asarray(R_body_camera, np.float64)
-        self._R_level_dock = np.asarray(R_level_dock, np.float64)
-        self._reset()
+    def __init__(self, dock: DockGeometry, mounting: Mounting | None = None) -> None:
+        self._centre = dock.centre
+        self._dock = DockGeometry(dock.names, dock.points - dock.centre, dock.source)
+        self._told = mounting
+        self._mounting = mounting_or_default(mounting)
+        self._memory = Memory()
 
-    def _reset(self) -> None:
-        self._time_s: float | None = None
-        self._locked: _Locked | None = None
-        self._candidates: list[Candidate] = []
-        self._last_seen_s: float | None = None
-        self._last_full_s = -np.inf
-        self._last_was_full = False
-        self._last_incomplete_s = -np.inf
-        self._last_markers: dict[str, tuple[float, float]] | None = None
-        self._attitude: tuple[float, Attitude] | None = None
-        self._faced_s = -np.inf
-
-    def plan(self, time_s: float) -> Plan:
-        """How to look at a frame of ``time_s``; it changes nothing.
+    def plan(self, time_s: float, attitude: Attitude | None = None) -> Plan:
+        """How to look at a frame of ``time_s``, taken at that attitude; it changes nothing.
 
         Evidence for another dock counts only as seen without any expectation, so each look is
         either about the priors or everywhere, never both.
         """
-        locked = self._kept(time_s)
-        if locked is None or self._full_is_due(locked, time_s):
-            partly = locked is None or not locked.whole
-            return Plan(incomplete=partly and self._incomplete_is_due(time_s))
-        bank = locked.bank.after(max(time_s - locked.time_s, 0.0))
-        likeliest = sorted(bank.hypotheses, key=lambda h: -h.weight)[:MAX_PRIORS]
-        priors = tuple(
-            Estimate(
-                h.state.R,
-                h.state.t,
-                0.0,
-                0.0,
-                np.asarray(np.linalg.inv(h.state.covariance[POSE, POSE]), np.float64),
-            )
-            for h in likeliest
-        )
-        return Plan(priors, everywhere=False)
+        memory = self._memory
+        locked = memory.kept(time_s)
+        R, covariance = expected_if_told(attitude, self._told)
+        if locked is None or full_is_due(memory, time_s):
+            return Plan((), True, incomplete_is_due(memory, time_s), R, covariance)
+        bank = locked.after(max(time_s - locked.time_s, 0.0))
+        return Plan(priors(bank.about(-self._centre)), False, False, R, covariance)
 
     def update(
         self,
@@ -151,148 +94,171 @@ class Tracker:
         """Take in what was found in the frame of ``time_s`` by a plan made for it.
 
         A frame not newer than the newest says nothing new and is not used; one older by more
-        than RESTART_S starts anew.
+        than RESTART_S starts anew.  Frames come from one thread at a time.
         """
-        if self._time_s is not None and time_s <= self._time_s:
-            if time_s > self._time_s - RESTART_S:
+        memory = self._memory
+        if memory.time_s is not None and time_s <= memory.time_s:
+            if time_s > memory.time_s - RESTART_S:
                 return self.at(time_s)
-            self._reset()
-        self._time_s = time_s
-        self._last_was_full = plan.everywhere
-        if plan.everywhere:
-            self._last_full_s = time_s
-        if plan.incomplete:
-            self._last_incomplete_s = time_s
-        self._run_on(time_s, plan, attitude)
-        sight = self._sight(plan, found, camera)
+            memory = Memory()
+        memory = _looked(memory, time_s, plan)
+        telemetry = memory.telemetry.heard(time_s, attitude, self._mounting.R_body_camera)
+        memory = replace(memory, telemetry=telemetry)
+        predicted = self._prediction(memory, time_s)
+        sight, after = self._sight(memory, plan, found, camera), None
+        evidence = found.evidence or 0.0
         if sight is not None:
-            evidence = found.evidence or 0.0
-            followed = self._followed(sight, evidence, time_s, plan)
-            if not followed and plan.everywhere:
-                self._propose(sight, evidence, time_s)
+            memory = replace(memory, last_markers=found.markers)
+            after = _followed(memory, predicted, sight, evidence, time_s, plan)
+        memory = after or _unseen(memory, predicted, time_s)
+        if sight is not None and after is None and plan.everywhere:
+            memory = _proposed(memory, sight, evidence, time_s)
+        # Published at once, when all is done: see ``at``.
+        self._memory = memory
         return self.at(time_s)
 
     def at(self, time_s: float) -> Track:
         """The track run on to any time, say from a frame's to now: latency taken out.
 
-        At a time before the newest frame's it is that of the newest.
+        At a time before the newest frame's it is that of the newest.  Any thread may ask while
+        another is in ``update``: the answer is wholly by the frames before that one or by it too.
         """
-        time_s = max(time_s, -np.inf if self._time_s is None else self._time_s)
-        seen = self._last_seen_s
-        age_s = None if seen is None else time_s - seen
-        locked = self._locked
-        state = state_of(
-            None if locked is None else time_s - locked.measured_s,
-            any(not c.given_up(time_s) for c in self._candidates),
-            seen is not None,
-        )
-        if locked is None or state not in ("tracking", "recently_lost"):
-            return Track(state, time_s, age_s=age_s)
-        bank = locked.bank.after(time_s - locked.time_s)
-        return Track.following(state, time_s, bank.hypotheses, time_s - locked.measured_s)
+        return self._memory.track(time_s, -self._centre)
 
-    def _kept(self, time_s: float) -> _Locked | None:
-        """The locked dock, unless it was last measured too long before."""
-        locked = self._locked
-        return None if locked is None or time_s - locked.measured_s > KEPT_S else locked
-
-    def _full_is_due(self, locked: _Locked, time_s: float) -> bool:
-        """Not twice in a row, that a dock with a marker out is looked for in between."""
-        if self._last_was_full:
-            return False
-        unsure = bool(self._candidates) or time_s - locked.measured_s > TRACKING_S
-        return unsure or time_s - self._last_full_s >= FULL_SEARCH_S
-
-    def _incomplete_is_due(self, time_s: float) -> bool:
-        """Now and then, and at every frame that may confirm what there is."""
-        return bool(self._candidates) or time_s - self._last_incomplete_s >= INCOMPLETE_SEARCH_S
-
-    def _run_on(self, time_s: float, plan: Plan, attitude: Attitude | None) -> None:
-        """Both kinds of docks to this frame's time, with what the vehicle knows."""
-        self._candidates = [
-            c.looked_for() if plan.everywhere else c
-            for c in self._candidates
-            if not c.given_up(time_s)
-        ]
-        locked = self._kept(time_s)
-        if locked is not None:
-            bank = locked.bank
-            elapsed_s = time_s - locked.time_s
-            turn_rate = self._turn_rate(time_s, attitude)
-            if turn_rate is not None:
-                bank = bank.turning(turn_rate)
-            bank = bank.after(elapsed_s)
-            share = min(1.0, (time_s - self._faced_s) / FACING_CORRELATION_S)
-            R, covariance = expected(attitude, self._R_body_camera, self._R_level_dock)
-            bank = bank.facing(R, covariance / share)
-            self._faced_s = time_s
-            locked = replace(locked, bank=bank, time_s=time_s)
-        self._locked = locked
-        self._attitude = None if attitude is None else (time_s, attitude)
-
-    def _turn_rate(self, time_s: float, attitude: Attitude | None) -> NDArray[np.float64] | None:
-        """(3,) rad/s: of the camera since the last frame."""
-        if attitude is None or self._attitude is None:
+    def _prediction(self, memory: Memory, time_s: float) -> Prediction | None:
+        """Of the locked dock at this frame's time, with what the vehicle knows; of one that has
+        manoeuvred since the last with a probability that is still open."""
+        locked, telemetry = memory.kept(time_s), memory.telemetry
+        if locked is None:
             return None
-        earlier_s, earlier = self._attitude
-        turn = attitude.turn_since(earlier, self._R_body_camera)
-        if turn is None or time_s - earlier_s > _LONGEST_ATTITUDE_GAP_S:
-            return None
-        return np.asarray(turn / (time_s - earlier_s))
+        elapsed_s = time_s - locked.time_s
+        # An attitude that is not new is some tenths of a second old, and says nothing new.
+        faced = telemetry.fresh is not None or telemetry.silent(time_s)
+        share = min(1.0, (time_s - memory.faced_s) / FACING_CORRELATION_S)
+        R, covariance = expected(telemetry.fresh, self._mounting)
 
-    def _sight(self, plan: Plan, found: Found, camera: CameraModel) -> Sight | None:
+        def predicted(swift: float) -> Bank:
+            bank, turn = locked.bank, telemetry.turn
+            if turn is not None:
+                # From its value at the last frame to its mean since, and where that is of a longer
+                # time, to that: a Wiener process against its mean over a time.
+                per_s = turning_of(swift) ** 2 / 3
+                older = per_s * max(turn.over_s - elapsed_s, 0.0)
+                bank = bank.turning(turn.rate, turn.variance + older, per_s * elapsed_s)
+            bank = bank.after(elapsed_s, swift)
+            return bank.facing(R, covariance / share) if faced else bank
+
+        swift = later(locked.swift, elapsed_s)
+        return Prediction(locked, predicted, swift, time_s if faced else memory.faced_s)
+
+    def _sight(self, memory: Memory, plan: Plan, found: Found, camera: CameraModel) -> Sight | None:
         """The frame's markers; none of a picture that has been seen already.
 
         Noise alone moves a marker by a thousandth of a pixel: places that are the same to the
         last bit are the same picture again, from a camera or a driver that hangs.
         """
-        if found.markers is None or not found.estimates or found.markers == self._last_markers:
+        if found.markers is None or not found.estimates or found.markers == memory.last_markers:
             return None
         if not plan.everywhere and (found.evidence or 0.0) < KEEP_EVIDENCE:
             return None
-        self._last_markers = found.markers
-        return Sight.of(found.markers, found.estimates, self._dock, camera)
+        poses = [pose.about(self._centre) for pose in found.estimates]
+        return Sight.of(found.markers, poses, self._dock, camera)
 
-    def _followed(self, sight: Sight, evidence: float, time_s: float, plan: Plan) -> bool:
-        """Whether the locked dock was measured.
 
-        One out of sight may be anywhere soon, and three markers of four leave open where the
-        fourth would be: what is found then must speak for itself.
-        """
-        locked = self._locked
-        if locked is None:
-            return False
-        unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
-        if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
-            return False
-        bank = locked.bank.seen(sight.worth(_share(sight, time_s - locked.measured_s)))
-        if bank is None:
-            return False
-        self._locked = _Locked(bank.doubting(sight), time_s, time_s, sight.whole)
-        self._last_seen_s = time_s
-        if plan.everywhere:  # what stands out most is this dock: others are none
-            self._candidates.clear()
-        return True
+def _looked(memory: Memory, time_s: float, plan: Plan) -> Memory:
+    """After a look by a plan, whatever it found."""
+    return replace(
+        memory,
+        time_s=time_s,
+        candidates=tuple(
+            c.looked_for() if plan.everywhere else c
+            for c in memory.candidates
+            if not c.given_up(time_s)
+        ),
+        last_was_full=plan.everywhere,
+        last_full_s=time_s if plan.everywhere else memory.last_full_s,
+        last_incomplete_s=time_s if plan.incomplete else memory.last_incomplete_s,
+    )
 
-    def _propose(self, sight: Sight, evidence: float, time_s: float) -> None:
-        """A dock where none is locked: a new candidate, or one more frame of one; or the lock."""
-        for i, candidate in enumerate(self._candidates):
-            new = sight.worth(_share(sight, time_s - candidate.time_s))
-            after = candidate.seen(new, evidence, time_s)
-            if after is not None:
-                self._candidates[i] = after
-                break
-        else:
-            after = Candidate.of(sight, evidence, time_s)
-            self._candidates.append(after)
-            self._candidates = self._candidates[-MAX_CANDIDATES:]
-        locked = self._locked
-        rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
-        if after.locked(rival):
-            self._locked = _Locked(after.bank, time_s, time_s, sight.whole)
-            self._last_seen_s = time_s
-            self._faced_s = -np.inf
-            self._candidates.clear()
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Prediction:
+    """``bank(p)``: at a frame's time, of a vehicle that manoeuvres with probability p; ``swift``:
+    that of this one; ``locked``: what it was made of; ``faced_s``: when the dock's expected
+    attitude was last taken in."""
+
+    locked: Locked
+    bank: Callable[[float], Bank]
+    swift: float
+    faced_s: float
+
+
+def _unseen(memory: Memory, predicted: Prediction | None, time_s: float) -> Memory:
+    """After a frame that did not show the locked dock."""
+    if predicted is None:
+        return replace(memory, locked=None)
+    bank = predicted.bank(predicted.swift)
+    locked = replace(predicted.locked, bank=bank, time_s=time_s, swift=predicted.swift)
+    return replace(memory, locked=locked, faced_s=predicted.faced_s)
+
+
+def _followed(
+    memory: Memory,
+    predicted: Prediction | None,
+    sight: Sight,
+    evidence: float,
+    time_s: float,
+    plan: Plan,
+) -> Memory | None:
+    """After the locked dock was measured; None where it was not.
+
+    One out of sight may be anywhere soon, and three markers of four leave open where the
+    fourth would be: what is found then must speak for itself.
+    """
+    if predicted is None:
+        return None
+    locked = predicted.locked
+    unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
+    if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
+        return None
+    new = sight.worth(_share(sight, time_s - locked.measured_s))
+    after = decided(predicted.bank, new, predicted.swift)
+    if after is None:
+        return None
+    bank, swift = after
+    return replace(
+        memory,
+        locked=Locked(bank.doubting(sight), time_s, time_s, sight.whole, swift),
+        last_seen_s=time_s,
+        faced_s=predicted.faced_s,
+        # What stands out most is this dock: others are none.
+        candidates=() if plan.everywhere else memory.candidates,
+    )
+
+
+def _proposed(memory: Memory, sight: Sight, evidence: float, time_s: float) -> Memory:
+    """With a dock where none is locked: a new candidate, one more frame of one, or the lock."""
+    candidates = list(memory.candidates)
+    for i, candidate in enumerate(candidates):
+        new = sight.worth(_share(sight, time_s - candidate.time_s))
+        after = candidate.seen(new, evidence, time_s)
+        if after is not None:
+            candidates[i] = after
+            break
+    else:
+        after = Candidate.of(sight, evidence, time_s)
+        candidates = [*candidates, after][-MAX_CANDIDATES:]
+    locked = memory.locked
+    rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
+    if not after.locked(rival):
+        return replace(memory, candidates=tuple(candidates))
+    return replace(
+        memory,
+        locked=Locked(after.bank, time_s, time_s, sight.whole),
+        last_seen_s=time_s,
+        faced_s=-np.inf,
+        candidates=(),
+    )
 
 
 def _share(sight: Sight, elapsed_s: float) -> float:

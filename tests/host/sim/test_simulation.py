@@ -13,6 +13,7 @@ from small_scene import STILL, small_scene
 from chromadock import Detector
 from chromadock.detector import MAPPINGS
 from chromadock.errors import ChromadockError
+from chromadock.method import MIN_VALUE
 from chromadock.sim.scene import SHIPPED
 from chromadock.sim.simulation import Simulation
 
@@ -38,6 +39,30 @@ def test_dock_and_vehicle_agree_on_the_hue(name: str, tmp_path: Path, record_pro
             differences.append(apart(step.dock_hue_deg, detection.marker.hue_deg))
     record_property("figure", f"{name}: hues apart by at most {max(differences):.1f} degrees")
     assert max(differences) < 6
+
+
+NIGHT = {
+    "light.surface_illuminance_lux": 0,
+    "light.sun_elevation_deg": -40,
+    "light.diffuse_share": 1,
+}
+
+
+@pytest.mark.parametrize("distance_m", [1.0, 2.0, 4.0, 8.0])
+def test_at_night_the_glow_of_the_lamps_is_not_taken_for_the_water(
+    distance_m: float, tmp_path: Path
+) -> None:
+    """Both take the fallback, though the vehicle's camera turns its gain up to the highest."""
+    scene = small_scene("pool", tmp_path, {**NIGHT, "vehicle.distance_m": distance_m})
+    simulation = Simulation(scene)
+    detector = Detector(scene.vehicle_camera.model, scene.dock)
+    for step in simulation.steps([0.0, 0.5, 1.0]):
+        frame = simulation.frame(step).image_bgr
+        detection = detector.process(frame, step.time_s)
+        assert step.dock_hue_deg == detection.marker.hue_deg == 120
+        assert detection.background.hue_deg is None
+    # It would, by the dock's own threshold: the picture is not black.
+    assert max(detection.background.rgb) >= MIN_VALUE
 
 
 def test_leds_show_the_mapping_of_the_waters_hue(tmp_path: Path) -> None:

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from track_truth import CAMERA, DOCK, Course, Pose, pixels, rotation, sight
 
+from chromadock.mounting import Mounting
 from chromadock.pose import Sighting, estimates, refined
-from chromadock.track.attitude import R_BODY_CAMERA_FORWARD as FORWARD
 from chromadock.track.attitude import Attitude, expected
 from chromadock.track.bank import FORGOTTEN, MAX_HYPOTHESES, Bank
 from chromadock.track.motion import turn_between
@@ -90,7 +90,7 @@ def test_an_attitude_decides_at_once_between_poses_pitched_up_and_down(mirrored:
     """The dock hangs level; the vehicle's nose is down by 16 degrees."""
     R, t = rotation(-16.0, 0.0), np.array([0.0, 0.0, 4.0])
     attitude = Attitude(0.0, np.radians(16.0))
-    level, covariance = expected(attitude, FORWARD, np.eye(3))
+    level, covariance = expected(attitude, Mounting())
     assert np.allclose(level, R)
     seen = sight((R, t), np.random.default_rng(3))
     poses = seen.poses if len(seen.poses) == 2 else ()

@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 from lit import to_linear
 from robust_composites import CAMERA, DOCK, Water, add_lamp, photographed, read
-from track_truth import rotation
+from track_truth import NOTHING, rotation
 
-from chromadock import Attitude, ChromadockError, Detection, Detector, Tracker
+from chromadock import Attitude, ChromadockError, Detection, Detector, Mounting
+from chromadock.look import Found, Look
+from chromadock.mounting import R_BODY_CAMERA_FORWARD
+from chromadock.stopwatch import Stopwatch
 from chromadock.track.candidate import PATIENT_SPAN_S
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"
@@ -122,11 +125,60 @@ def test_latency_is_taken_out_by_asking_for_a_later_time() -> None:
     assert now.pose.t == pytest.approx(pose(2.1)[1], abs=0.06)
 
 
-def test_an_attitude_is_taken_and_a_tracker_of_ones_own() -> None:
-    detector = Detector(CAMERA, DOCK, tracker=Tracker(DOCK, np.eye(3)[[2, 0, 1]]))
+def test_an_attitude_is_taken_and_a_mounting() -> None:
+    detector = Detector(CAMERA, DOCK, mounting=Mounting(np.eye(3)[[2, 0, 1]]))
     for t in times(0.0, 0.5):
         last = detector.process(frame(t), t, Attitude(0.0, 0.0))
     assert last.track is not None and last.track.state == "tracking"
+
+
+class Listening:
+    """A method that keeps what it is told."""
+
+    mask = np.zeros((480, 640), np.uint8)
+
+    def __init__(self) -> None:
+        self.looks: list[Look] = []
+
+    def find(self, look: Look, watch: Stopwatch) -> Found:
+        self.looks.append(look)
+        return NOTHING
+
+
+@pytest.mark.parametrize("independent", [False, True])
+def test_the_search_is_told_how_the_camera_sees_the_dock_turned(independent: bool) -> None:
+    """A camera rolled by 90 degrees sees an upright dock rolled by -90; a vehicle upside down
+    by 180; who tells nothing gets the upright search."""
+    rolled = Mounting(R_BODY_CAMERA_FORWARD @ rotation(0, 0, 90))
+    cases = (
+        (rolled, None, -90.0),
+        (None, Attitude(np.pi, 0.0), 180.0),
+        (rolled, Attitude(np.radians(-30), 0.0, 1.0), -60.0),
+        (None, None, None),
+    )
+    for mounting, attitude, roll_deg in cases:
+        detector = Detector(CAMERA, DOCK, independent=independent, mounting=mounting)
+        detector._method = method = Listening()  # type: ignore[assignment]
+        detector.process(water(np.random.default_rng(0)), 0.0, attitude)
+        R, covariance = method.looks[0].R_expected, method.looks[0].R_covariance
+        if roll_deg is None:
+            assert R is None and covariance is None
+        else:
+            assert R is not None and covariance is not None
+            np.testing.assert_allclose(R, rotation(0, 0, roll_deg), atol=1e-12)
+            assert np.linalg.eigvalsh(covariance).min() > 0
+
+
+@pytest.mark.parametrize("mounting", [np.eye(3), "forward", 0])
+def test_what_is_no_mounting_is_refused(mounting: Any) -> None:
+    for independent in (False, True):
+        with pytest.raises(ChromadockError, match="give Mounting"):
+            Detector(CAMERA, DOCK, independent=independent, mounting=mounting)
+
+
+def test_what_is_no_attitude_is_refused() -> None:
+    with pytest.raises(ChromadockError, match="give Attitude"):
+        Detector(CAMERA, DOCK).process(frame(0.0), 0.0, (0.0, 0.0, 0.0))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("time_s", [np.nan, np.inf])

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from track_truth import CAMERA, DOCK, approach, rotation, sight
 
-from chromadock.track.attitude import R_BODY_CAMERA_FORWARD as FORWARD
+from chromadock.mounting import R_BODY_CAMERA_FORWARD as FORWARD
+from chromadock.mounting import Mounting
 from chromadock.track.attitude import Attitude, expected
 from chromadock.track.bank import Bank
 from chromadock.track.fusion import with_attitude, with_markers, with_turn_rate
@@ -112,8 +113,10 @@ def test_an_attitude_turns_the_dock_and_what_is_correlated() -> None:
 
 def test_a_rate_of_turn_is_taken_in() -> None:
     begun = met(*approach(0.0), np.eye(6) * 1e-4)
-    fused = with_turn_rate(begun, np.array([0.0, 0.3, 0.0]))
+    fused = with_turn_rate(begun, np.array([0.0, 0.3, 0.0]), 0.02**2)
     assert fused.state.turn_rate == pytest.approx([0.0, 0.3, 0.0], abs=0.01)
+    vague = with_turn_rate(begun, np.array([0.0, 0.3, 0.0]), 0.3**2)
+    assert vague.state.turn_rate == pytest.approx([0.0, 0.15, 0.0], abs=0.01)
 
 
 def test_the_errors_of_markers_have_a_floor() -> None:
@@ -124,7 +127,7 @@ def test_the_errors_of_markers_have_a_floor() -> None:
 
 
 def test_a_level_forward_camera_sees_a_level_dock_as_it_is() -> None:
-    R, covariance = expected(None, FORWARD, np.eye(3))
+    R, covariance = expected(None, Mounting())
     assert pytest.approx(np.eye(3)) == R
     assert np.degrees(np.sqrt(np.diag(covariance))) == pytest.approx([10, 20, 10], abs=0.1)
 
@@ -137,7 +140,7 @@ def test_what_the_vehicle_turns_by_the_dock_turns_by_the_other_way(
     attitude: Attitude, axis: int, sign: int
 ) -> None:
     """Roll right: the dock turns left about z.  Nose up: about x.  A heading alone says nothing."""
-    R, covariance = expected(attitude, FORWARD, np.eye(3))
+    R, covariance = expected(attitude, Mounting())
     assert turn_between(np.eye(3), R) == pytest.approx(sign * 0.2 * np.eye(3)[axis])
     down = R @ [0, 1, 0]
     assert np.sqrt(down @ covariance @ down) == pytest.approx(np.radians(20))
@@ -146,7 +149,7 @@ def test_what_the_vehicle_turns_by_the_dock_turns_by_the_other_way(
 def test_a_camera_that_looks_down_expects_the_dock_before_it_turned() -> None:
     """Pitched down by 90 degrees: image up is ahead, so the dock's down is the camera's forward."""
     R_body_down = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    R, _ = expected(None, R_body_down, np.eye(3))
+    R, _ = expected(None, Mounting(R_body_down))
     assert pytest.approx([0, 0, 1]) == R @ [0, 1, 0]
     assert pytest.approx([0, -1, 0]) == R @ [0, 0, 1]
 

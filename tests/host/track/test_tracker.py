@@ -11,8 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from track_truth import CAMERA, DOCK, NOTHING, Pose, approach, found, rotation
 
-from chromadock import Attitude, ChromadockError, Track, Tracker
+from chromadock import Attitude, ChromadockError, DockGeometry, Track, Tracker
 from chromadock.look import Found
+from chromadock.pose import lever
+from chromadock.rotation import matrix_from_quaternion
 from chromadock.track.candidate import (
     GIVEN_UP_S,
     LOCK_EVIDENCE,
@@ -21,8 +23,9 @@ from chromadock.track.candidate import (
     PATIENT_FRAMES,
     PATIENT_SPAN_S,
 )
+from chromadock.track.plan import FULL_SEARCH_S, MAX_PRIORS, Plan
 from chromadock.track.states import KEPT_S, STATES, TRACKING_S, state_of
-from chromadock.track.tracker import FULL_SEARCH_S, KEEP_EVIDENCE, MAX_PRIORS, Plan
+from chromadock.track.tracker import KEEP_EVIDENCE
 
 HZ = 10
 Seen = Callable[[float, Plan], Found]
@@ -189,7 +192,8 @@ def test_a_marker_that_goes_out_does_not_lose_the_dock(run: Run) -> None:
 
 
 def test_while_a_dock_is_tracked_the_frame_is_searched_about_it(run: Run) -> None:
-    assert run.tracker.plan(0.0) == Plan(incomplete=True)
+    first = run.tracker.plan(0.0)
+    assert first.everywhere and first.incomplete and not first.priors
     run.frames(1.0, run.dock)
     plans: list[Plan] = []
     run.frames(5.0, lambda time_s, plan: (plans.append(plan), run.dock(time_s, plan))[1])
@@ -327,6 +331,53 @@ def test_motion_and_the_heading_tell_the_two_poses_apart(record_property: Any) -
 def test_an_attitude_that_is_no_number_is_refused(angles: tuple[float, float, float]) -> None:
     with pytest.raises(ChromadockError, match="radians"):
         Attitude(*angles)
+
+
+@pytest.mark.parametrize("shift", [(0.0, -2.0, 0.0), (0.0, 0.0, -1.0), (-2.0, 0.5, 1.0)])
+def test_it_does_not_matter_where_the_dock_has_its_origin(shift: tuple[float, ...]) -> None:
+    """The same pixels: at each moment the same dock, its covariance carried to the origin."""
+    origin = np.array(shift)
+    moved = DockGeometry(DOCK.names, DOCK.points - origin)
+    trackers = Tracker(DOCK), Tracker(moved)
+    rng = np.random.default_rng(4)
+    for k in range(40):
+        time_s = k / HZ
+        R, t = approach(time_s)
+        names = DOCK.names if k % 7 else DOCK.names[1:]
+        seen = found((R, t), rng, names=names) if k % 11 else NOTHING
+        attitude = Attitude(0.01 * np.sin(k), 0.0, 0.02 * k)
+        tracks, priors = [], []
+        for tracker, about in zip(trackers, (np.zeros(3), origin), strict=True):
+            plan = tracker.plan(time_s)
+            poses = tuple(pose.about(about) for pose in seen.estimates)
+            told = replace(seen, estimates=poses)
+            priors.append(plan.priors)
+            tracks.append(tracker.update(time_s, plan, told, CAMERA, attitude))
+        near, far = tracks
+        assert near.state == far.state
+        for a, b in zip(*priors, strict=True):
+            b = b.about(-origin)
+            np.testing.assert_allclose(b.t, a.t, atol=1e-6)
+            np.testing.assert_allclose(b.covariance, a.covariance, rtol=1e-3, atol=1e-8)
+        for one, other in ((near.pose, far.pose), (near.alternative, far.alternative)):
+            assert (one is None) == (other is None)
+            if one is None or other is None:
+                continue
+            assert other.weight == pytest.approx(one.weight, abs=1e-6)
+            R = matrix_from_quaternion(other.q_wxyz)
+            np.testing.assert_allclose(R, matrix_from_quaternion(one.q_wxyz), atol=1e-6)
+            np.testing.assert_allclose(np.array(other.t) - R @ origin, one.t, atol=1e-6)
+            J = lever(-R @ origin)
+            spread = J @ np.reshape(other.covariance, (6, 6)) @ J.T
+            np.testing.assert_allclose(spread.ravel(), one.covariance, rtol=1e-3, atol=1e-9)
+    assert near.state == "tracking"
+    assert near.velocity == pytest.approx(far.velocity, abs=1e-6)
+
+
+def test_an_attitude_in_degrees_is_refused() -> None:
+    with pytest.raises(ChromadockError, match="radians, not degrees"):
+        Attitude(2.0, -12.0)
+    assert Attitude(0.0, 0.0, 400.0).yaw_rad == 400.0  # a yaw may be counted on
 
 
 @given(

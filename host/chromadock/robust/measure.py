@@ -1,0 +1,163 @@
+"""Candidates of one frame held to its pixels: where exactly the markers are, and the poses."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.pose import Estimate, Sighting, estimates, same_rotation
+from chromadock.pose import refined as refined_pose
+from chromadock.profile import widened
+from chromadock.robust.acceptance import LEAST_EVIDENCE, Constellation, doubt
+from chromadock.robust.guided import Guess, guided
+from chromadock.robust.peaks import Peaks
+from chromadock.robust.placement import PosePrior, placement
+from chromadock.robust.refine import Tops, refined
+from chromadock.robust.response import Response
+from chromadock.robust.twin import is_image_of
+from chromadock.robust.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
+
+MAX_CHOICES = 3
+"""Places of each of four markers that are tried in every combination; of more markers two."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Measure:
+    """One frame and what is known of it.
+
+    ``frame_bgr`` (H, W, 3) uint8; ``prior``: of the dock's pose; ``upright``: see ``View``.
+    """
+
+    frame_bgr: NDArray[np.uint8]
+    response: Response
+    view: View
+    prior: PosePrior
+    upright: complex
+
+    def best(self, candidates: list[Candidate]) -> Constellation | None:
+        """The dock: the candidate with most evidence, or what it is an image of."""
+        accepted: list[Constellation] = []
+        for candidate in candidates[:MAX_TRIALS]:
+            if any(_overlap(candidate.xy, c.xy, candidate.cell) for c in accepted):
+                continue
+            constellation = self._accepted(candidate)
+            if constellation is not None:
+                accepted.append(constellation)
+        if not accepted:
+            return None
+        best = max(accepted, key=lambda c: c.evidence)
+        originals = [c for c in accepted if is_image_of(best, c, self.view.camera)]
+        return max(originals, key=lambda c: c.evidence) if originals else best
+
+    def about(self, priors: tuple[Estimate, ...], peaks: dict[int, Peaks]) -> Constellation | None:
+        """What stands about where a track has the dock, if that is evidence enough.
+
+        With the poses downhill of the track's: which of them is right is the track's to say.
+        """
+        best: Constellation | None = None
+        for prior in priors:
+            for cell, found in peaks.items():
+                error_px = PEAK_ERROR * cell
+                guess = guided(self.view.points, prior, found, error_px, self.view.camera)
+                if guess is None or guess.evidence < LEAST_EVIDENCE:
+                    continue
+                if best is None or (len(guess.markers), guess.evidence) > (
+                    len(best.markers),
+                    best.evidence,
+                ):
+                    best = self._partly(guess, cell, found, priors) or best
+        return best
+
+    def incomplete(self, peaks: dict[int, Peaks]) -> Constellation | None:
+        """The dock with a marker out, if that explains the frame well enough."""
+        best: Constellation | None = None
+        for cell, found in peaks.items():
+            least = LEAST_EVIDENCE if best is None else best.evidence
+            error_px = PEAK_ERROR * cell
+            guess = self.view.incomplete.find(cell, found, error_px, least, self.upright)
+            if guess is not None:
+                best = self._partly(guess, cell, found) or best
+        return best
+
+    def _accepted(self, candidate: Candidate) -> Constellation | None:
+        tops = self._refined(candidate.xy, candidate.cell, candidate.noise, candidate.best)
+        if tops is None:
+            return None
+        xy, sigma = _choices(tops)
+        likely = self.view.log_shape(xy, sigma, self.upright) if len(xy) > 1 else np.zeros(1)
+        k = int(likely.argmax())
+        sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera)
+        poses = estimates(sighting)
+        if not poses:
+            return None
+        placed = placement(sighting, poses, self.prior)
+        # So many places to choose from are so many chances for clutter.
+        evidence = placed.log_density + candidate.looks - float(np.log(len(xy)))
+        if evidence < LEAST_EVIDENCE:
+            return None
+        sighting = replace(sighting, sigma_px=placed.sigma_px)
+        order = np.argsort(-placed.weights, kind="stable")
+        again = (refined_pose(sighting, poses[k].R, poses[k].t) or poses[k] for k in order)
+        wide = tuple(widened(sighting, pose) for pose in again)
+        markers = np.arange(len(self.view.points))
+        return Constellation(markers, xy[k], evidence, wide, doubt(wide, placed.weights[order]))
+
+    def _partly(
+        self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
+    ) -> Constellation | None:
+        """What was guessed, measured: markers at the places that are nearest to the guess."""
+        found = peaks.xy[guess.members]
+        tops = self._refined(found, cell, peaks.noise[guess.members], peaks.best[guess.members])
+        if tops is None:
+            return None
+        places = found if guess.expected is None else guess.expected
+        nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
+        xy, sigma = (np.array(values) for values in zip(*nearest, strict=True))
+        sighting = Sighting(self.view.points[guess.markers], xy, sigma, self.view.camera)
+        poses = _downhill(sighting, priors) if priors else estimates(sighting)
+        if not poses:
+            return None
+        placed = placement(sighting, poses, self.prior)
+        sighting = replace(sighting, sigma_px=placed.sigma_px)
+        poses = tuple(refined_pose(sighting, pose.R, pose.t) or pose for pose in poses)
+        if not priors:
+            poses = tuple(widened(sighting, pose) for pose in poses)
+        return Constellation(guess.markers, xy, guess.evidence, poses)
+
+    def _refined(
+        self,
+        xy: NDArray[np.float64],
+        cell: int,
+        noise: NDArray[np.float64],
+        best: NDArray[np.uint8],
+    ) -> list[Tops] | None:
+        # All markers shine in one colour: they are looked at through the filter of most of them.
+        [(common, _)] = Counter(best.tolist()).most_common(1)
+        return refined(self.frame_bgr, xy, cell, self.response.weights[common][None], noise)
+
+
+def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """All ways to choose a place for each marker: (N, n, 2) places and their (N, n) errors."""
+    each = MAX_CHOICES if len(tops) <= 4 else 2
+    xy = product(*(top.xy[:each] for top in tops))
+    sigma = product(*(top.sigma[:each] for top in tops))
+    return np.array(list(xy)), np.array(list(sigma))
+
+
+def _downhill(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimate, ...]:
+    """The poses that markers leave open downhill of priors, best first; from scratch, if none."""
+    found: list[Estimate] = []
+    for prior in priors:
+        pose = refined_pose(sighting, prior.R, prior.t)
+        if pose is not None and not any(same_rotation(pose.R, other.R) for other in found):
+            found.append(pose)
+    return tuple(sorted(found, key=lambda pose: pose.chi_square)) or estimates(sighting)
+
+
+def _overlap(a: NDArray[np.float64], b: NDArray[np.float64], cell: int) -> bool:
+    """Whether two sets of places share one, within two cells."""
+    return bool((np.linalg.norm(a[:, None] - b[None], axis=2) < 2 * cell).any())

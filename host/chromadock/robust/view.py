@@ -1,0 +1,124 @@
+"""What one camera makes of one dock: prepared once, used for every frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.camera import CameraModel
+from chromadock.robust.acceptance import HOPEFUL
+from chromadock.robust.incomplete import Incomplete
+from chromadock.robust.peaks import Peaks
+from chromadock.robust.placement import PosePrior
+from chromadock.robust.search import Search
+from chromadock.robust.shape import (
+    ATTITUDE_RAD,
+    MIN_SPACING_CELLS,
+    ShapeModel,
+    focal_px,
+    ideal,
+)
+
+PEAK_ERROR = 0.25
+"""Error of a peak's place, in cells."""
+
+MAX_TRIALS = 6
+"""Candidates of a frame that are measured: bounds the time.  The true one is almost always the
+first; some of the others are the same dock with one marker mistaken, and its image."""
+
+LOG_RANGES = float(np.log(20.0))
+"""A dock may be met from where it fills the picture to twenty times as far."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Candidate:
+    """Peaks at one scale, one for each marker: ``xy`` (n, 2) pixels, ``noise`` (n,) and ``best``
+    (n,) as in ``peaks.Peaks``; ``looks``: see ``search.Candidates``."""
+
+    cell: int
+    xy: NDArray[np.float64]
+    noise: NDArray[np.float64]
+    best: NDArray[np.uint8]
+    looks: float
+    evidence: float
+
+
+class View:
+    """One camera and one dock of (n, 3) markers."""
+
+    def __init__(self, points: NDArray[np.float64], camera: CameraModel) -> None:
+        self.points = points
+        self.camera = camera
+        self.focal_px = focal_px(camera)
+        self.model = ShapeModel.learn(points, camera)
+        corners = ideal(np.array([(0, 0), (camera.width - 1.0, camera.height - 1.0)]), camera)
+        across = corners[1] - corners[0]
+        self.area = float(abs(across.real * across.imag))
+        self._searches: dict[int, Search] = {}
+
+    @cached_property
+    def incomplete(self) -> Incomplete:
+        """The search for all markers but one: learnt when it is first needed."""
+        return Incomplete(self.points, self.camera, self.area)
+
+    def is_of(self, camera: CameraModel) -> bool:
+        """Whether this camera's geometry is the same."""
+        mine = self.camera
+        return mine is camera or (
+            (mine.width, mine.height) == (camera.width, camera.height)
+            and np.array_equal(mine.matrix, camera.matrix)
+            and np.array_equal(mine.distortion, camera.distortion)
+        )
+
+    def prior(
+        self,
+        R_expected: NDArray[np.float64] | None,
+        R_covariance: NDArray[np.float64] | None,
+    ) -> PosePrior:
+        """What is known of the dock's pose: its attitude as told, or that of an upright camera on
+        its way in."""
+        if R_expected is None or R_covariance is None:
+            R_expected, R_covariance = np.eye(3), np.diag(ATTITUDE_RAD**2)
+        return PosePrior(self.focal_px, self.area, LOG_RANGES, R_expected, R_covariance)
+
+    def candidates(self, cell: int, peaks: Peaks, upright: complex) -> list[Candidate]:
+        """What may be the dock among the peaks of one scale, the best first.
+
+        ``upright``: a unit complex number that turns the picture to where the dock stands upright.
+        """
+        if cell not in self._searches:
+            apart_px = MIN_SPACING_CELLS * cell  # so that cells do not touch
+            self._searches[cell] = Search(self.model, PEAK_ERROR * cell, self.area, apart_px)
+        z = ideal(peaks.xy, self.camera) * upright
+        found = self._searches[cell].find(z, peaks, HOPEFUL)
+        best = zip(found.members, found.looks.tolist(), found.evidence.tolist(), strict=True)
+        return [
+            Candidate(
+                cell, peaks.xy[members], peaks.noise[members], peaks.best[members], looks, evidence
+            )
+            for members, looks, evidence in islice(best, MAX_TRIALS)
+        ]
+
+    def log_shape(
+        self, xy: NDArray[np.float64], sigma: NDArray[np.float64], upright: complex
+    ) -> NDArray[np.float64]:
+        """(N,) log density of places (N, n, 2), known to (N, n), as shapes of the dock."""
+        order = list(self.model.order)
+        z = ideal(xy.reshape(-1, 2), self.camera).reshape(sigma.shape)[:, order] * upright
+        base = self.model.log_base(z[:, 1] - z[:, 0])
+        return np.asarray(base + self.model.log_shape(z, sigma[:, order]))
+
+
+def upright(R_expected: NDArray[np.float64] | None) -> complex:
+    """A unit complex number that turns pixels x + iy to where a dock of attitude ``R_camera_dock``
+    (3, 3) stands upright: the inverse of its roll about the line of sight."""
+    if R_expected is None:
+        return 1.0 + 0.0j
+    right, down = R_expected[:2, 0], R_expected[:2, 1]
+    # The turn nearest to both axes as the camera sees them.
+    turn = complex(right[0] + down[1], right[1] - down[0])
+    return turn.conjugate() / abs(turn) if abs(turn) > 0 else 1.0 + 0.0j

@@ -106,8 +106,7 @@ typedef struct {
     const double *offset;   /* spans x facets x 2m: minus W times the mean */
     const double *whiten;   /* spans x facets x 2m x 2m: W, lower triangular;
                              * Re b_3, Im b_3, Re b_4, ... */
-    const search_box_t
-        *thirds; /* spans: where b_3 passes the gate of some facet */
+    const search_box_t *thirds; /* spans: where b_3 passes some facet's gate */
 } search_dock_t;
 
 /* Find the sets of promising peaks with an evidence of least or more.

@@ -1,16 +1,24 @@
-"""How alike the strengths of a dock's markers are, and what that says.
+"""What the strengths and colours of sets of peaks say: that they are a dock's, or clutter.
 
 All markers shine alike: log strengths scatter little about a common value of which nothing is
 known, and about a slope from one end of the dock to the other, since the end that is turned
-away is seen through more water.
+away is seen through more water.  ``chroma`` says what is supposed of colours, ``clutter`` what
+of peaks that are no dock's; ``host/native/search.c`` weighs them.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.peaks import MIN_SNR
+from chromadock._native import ffi, lib
+from chromadock.robust import chroma, clutter
+from chromadock.robust.peaks import MAX_PEAKS, MIN_SNR, Peaks
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
 
 SPREAD = 0.25
 """Standard deviation of the log strength of one dock's markers: where in a cell each falls,
@@ -24,45 +32,72 @@ STRONGEST = 400.0
 """Signal to noise of markers in a clear pool at a metre; the common value is even in its
 logarithm up to there."""
 
-_LOG_RANGE = float(np.log(STRONGEST / MIN_SNR))
+CONSTANTS = ffi.new(
+    "evidence_constants_t *",
+    {
+        "strength_spread": SPREAD,
+        "strength_slope": SLOPE,
+        "strength_log_range": float(np.log(STRONGEST / MIN_SNR)),
+        "colour_spread": chroma.SPREAD,
+        "colour_noise": chroma.NOISE,
+        "colour_disturbed": chroma.DISTURBED,
+        "colour_supposed": chroma.SUPPOSED,
+        "colour_wide": chroma.WIDE,
+        "clutter_exponent": clutter.EXPONENT,
+        "clutter_supposed": clutter.SUPPOSED,
+        "clutter_most_fall": clutter.MOST_FALL,
+        "clutter_neighbourhood": clutter.NEIGHBOURHOOD,
+    },
+)
 
 
-def variance(snr: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Of the log strength of a marker that stands out by ``snr``."""
-    return np.asarray(SPREAD**2 + 1 / snr**2)
+class NativePeaks:
+    """Peaks at ``z`` (N,), in a frame of so many square pixels, as C sees them."""
+
+    def __init__(self, z: Complex, peaks: Peaks, area: float) -> None:
+        count = len(peaks.snr)
+        # Where there were more peaks than are kept, those from the weakest one on are known.
+        least = float(peaks.snr[-1]) if count == MAX_PEAKS else MIN_SNR
+        # C's pointers keep nothing alive.
+        self._kept = [doubles(a) for a in (z, peaks.snr, peaks.chroma, peaks.likeness)]
+        self.pointer: Any = ffi.new("evidence_peaks_t *", (count, *self._kept, least, area))
 
 
-def log_alike(snr: NDArray[np.float64], along: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(M,) log density of the log strengths of sets of markers, (M, n) signals to noise.
+def doubles(values: Complex | Real) -> Any:
+    """The numbers of an array as a C array, which keeps their memory alive."""
+    return ffi.from_buffer("double[]", np.ascontiguousarray(values).view(np.float64))
 
-    The integral over the common value and the slope, of the product of normal densities about
-    them.  ``along`` (n,): where the markers are along the dock, -1..1.
+
+def evidence_of_sets(
+    z: Complex, peaks: Peaks, area: float, members: NDArray[np.intp], along: Real
+) -> Real:
+    """(M,) natural log of the likelihood ratio of (M, k) sets in all but their places.
+
+    Parameters
+    ----------
+    z : (N,) places of the peaks, in a frame of ``area`` square pixels.
+    along : (k,) where the markers at the members are along the dock, -1..1.
+
+    Raises
+    ------
+    ValueError
+        More peaks than C has room for, or than the frame has.
     """
-    value, weight = np.log(snr), 1 / variance(snr)
-    # Normal equations of value = common + slope along, the slope's prior included.
-    powers = along[:, None] ** np.arange(3)
-    a, b, c = (weight @ powers).T
-    c = c + 1 / SLOPE**2
-    x, y = (weight * value @ powers[:, :2]).T
-    determinant = a * c - b * b
-    off = (weight * value**2).sum(axis=1) - (c * x * x - 2 * b * x * y + a * y * y) / determinant
-    norm = np.log((weight / (2 * np.pi)).prod(axis=1) / (determinant / (2 * np.pi)))
-    return np.asarray(0.5 * (norm - off) - np.log(SLOPE) - np.log(_LOG_RANGE))
+    native, evidence = NativePeaks(z, peaks, area), np.empty(len(members))
+    sets = np.ascontiguousarray(members, np.int32)
+    if lib.evidence_of_sets(
+        CONSTANTS,
+        native.pointer,
+        *sets.shape,
+        ffi.from_buffer("int32_t[]", sets),
+        doubles(along),
+        doubles(evidence),
+    ):
+        raise ValueError(f"sets of {sets.shape[1]} of {len(peaks.snr)} peaks")
+    return evidence
 
 
-def log_unlike(
-    snr: NDArray[np.float64], other: NDArray[np.float64], apart: float
-) -> NDArray[np.float64]:
-    """(N,) the least that ``log_alike`` of any set with both of (N,) markers falls below its most.
-
-    Their difference alone: density of all = density of it, times that of the others given it.
-    ``apart``: the markers' distance along the dock.
-    """
-    spread = variance(snr) + variance(other) + (SLOPE * apart) ** 2
-    return np.asarray(-0.5 * np.log(snr / other) ** 2 / spread)
-
-
-def placed_along(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def placed_along(points: Real) -> Real:
     """Where (n, 3) markers are along the dock's longest extent: (n,), its ends at most 1 off."""
     centred = points - points.mean(axis=0)
     along = centred @ np.linalg.svd(centred)[2][0]

@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.pose import Estimate, projected
-from chromadock.robust.chroma import Colours
-from chromadock.robust.clutter import Clutter
-from chromadock.robust.evidence import log_alike, placed_along
+from chromadock.robust.evidence import evidence_of_sets, placed_along
 from chromadock.robust.peaks import Peaks
 
 MIN_MARKERS = 3
@@ -65,9 +63,7 @@ def guided(
     count, along = len(points_dock), placed_along(points_dock)
     jacobian = derivatives.reshape(-1, 6)
     covariance = jacobian @ prior.covariance @ jacobian.T + sigma_px**2 * np.eye(2 * count)
-    distances = np.linalg.norm(peaks.xy[:, None] - peaks.xy[None], axis=2)
-    clutter = Clutter.of(distances, peaks.snr, float(camera.width * camera.height))
-    colours = Colours.of(peaks.chroma, peaks.snr, clutter.near)
+    z, area = peaks.xy @ np.array([1, 1j]), float(camera.width * camera.height)
 
     most = max(1, int(_MAX_CHOICES ** (1 / count)))
     options: list[list[int]] = []
@@ -93,9 +89,7 @@ def guided(
         members = np.array(choices)
         off = (peaks.xy[members] - expected[markers]).reshape(len(members), -1)
         evidence = chance + log_norm - 0.5 * (off @ inverse * off).sum(axis=1)
-        evidence += log_alike(peaks.snr[members], along[markers])
-        evidence += peaks.likeness[members].sum(axis=1)
-        evidence += clutter.rarity_of(members) + colours.log_common(members)
+        evidence += evidence_of_sets(z, peaks, area, members, along[markers])
         k = int(evidence.argmax())
         if best is None or evidence[k] > best.evidence:
             best = Guess(markers, members[k], float(evidence[k]), expected[markers])

@@ -11,7 +11,6 @@ Places are complex numbers x + iy in ideal pixels: focal length times tangent, n
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -46,7 +45,10 @@ _TAIL = 0.001  # of the views may be shorter than a window
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Where displacements between two markers point: lengths, direction (a unit), spread."""
+    """Where displacements between two markers point: lengths, direction (a unit), spread.
+
+    ``search_window_t`` in ``host/native/search.h`` is the same.
+    """
 
     shortest: float
     longest: float
@@ -66,13 +68,6 @@ class Window:
     def beyond(self, length: float) -> Window:
         """Without what is shorter."""
         return replace(self, shortest=max(self.shortest, length))
-
-    def holds(self, displacements: Complex, distances: Real, slack: float) -> NDArray[np.bool_]:
-        """Which displacements, known to ``slack``, lie inside."""
-        turned = displacements * self.direction.conjugate()
-        wide = np.abs(turned.imag) < math.tan(self.half_angle) * turned.real + slack
-        long = (distances > self.shortest - slack) & (distances < self.longest + slack)
-        return np.asarray(wide & long)
 
 
 @dataclass(frozen=True, slots=True)

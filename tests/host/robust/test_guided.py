@@ -21,7 +21,9 @@ def peaks(*, shown: list[int], specks: int, seed: int = 0) -> Peaks:
     markers = CAMERA.project(POINTS @ R.T + T)[shown] + rng.normal(0, 0.5, (len(shown), 2))
     xy = np.concatenate([markers, rng.uniform((0, 0), (640, 480), (specks, 2))])
     snr = np.concatenate([np.full(len(shown), 12.0), np.sort(rng.uniform(3, 11, specks))[::-1]])
-    return Peaks(xy, snr, np.ones(len(xy)), np.zeros((len(xy), 2)))
+    nothing, every = np.zeros(len(xy)), np.arange(len(xy))
+    chroma = np.zeros((len(xy), 2))
+    return Peaks(xy, snr, np.ones(len(xy)), chroma, nothing, every.astype(np.uint8), every)
 
 
 def test_all_markers_are_taken_where_the_pose_expects_them() -> None:

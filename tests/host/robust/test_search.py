@@ -1,136 +1,140 @@
+"""The search against the same written the plain way, ``search_reference``; and what it promises."""
+
 from __future__ import annotations
 
-from itertools import permutations
 from typing import Any
 
 import numpy as np
 import pytest
+from search_reference import log_looks, sets_of
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.pose import Sighting, estimates
-from chromadock.robust.acceptance import rigid
-from chromadock.robust.chroma import Colours
-from chromadock.robust.clutter import Clutter
+from chromadock.robust import clutter, search
 from chromadock.robust.evidence import (
     SLOPE,
     SPREAD,
     STRONGEST,
-    log_alike,
-    log_unlike,
+    evidence_of_sets,
     placed_along,
 )
-from chromadock.robust.method import MAX_TRIALS
-from chromadock.robust.peaks import MIN_SNR
-from chromadock.robust.search import Search
+from chromadock.robust.peaks import MAX_PEAKS, MAX_PROMISING, MIN_SNR, Peaks
+from chromadock.robust.search import Candidates, Search
 from chromadock.robust.shape import ShapeModel
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points
-FIVE = np.vstack([RECTANGLE, (0.0, 0.0, -0.3)])
+TURNS = np.arange(8) * np.pi / 4
+DOCKS = {
+    3: RECTANGLE[:3],
+    4: RECTANGLE,
+    5: np.vstack([RECTANGLE, (0.0, 0.0, -0.3)]),
+    8: np.column_stack([0.4 * np.cos(TURNS), 0.4 * np.sin(TURNS), np.zeros(8)]),
+}
 AREA = 640.0 * 480.0
 SIGMA_PX = 1.0
-MODELS = {len(points): ShapeModel.learn(points, CAMERA) for points in (RECTANGLE, FIVE)}
+MODELS = {count: ShapeModel.learn(points, CAMERA) for count, points in DOCKS.items()}
 
 
-def search(markers: int) -> Search:
-    return Search(MODELS[markers], SIGMA_PX, AREA)
+def frame(
+    points: np.ndarray | None, specks: int, rng: np.random.Generator, strength: float = 15.0
+) -> tuple[np.ndarray, Peaks, list[int]]:
+    """Places of a dock's markers among specks, and where each marker went.
+
+    Specks' strengths fall off as a square; markers are of one strength and colour.
+    """
+    xy = rng.uniform((0, 0), (640, 480), (specks, 2))
+    snr, chroma = MIN_SNR * rng.random(specks) ** -0.5, rng.normal(0, 0.6, (specks, 2))
+    count = 0
+    if points is not None:
+        count = len(points)
+        markers = seen(points, rng) + rng.normal(0, 0.3, (count, 2))
+        xy = np.concatenate([markers, xy])
+        snr = np.concatenate([strength * np.exp(rng.normal(0, 0.1, count)), snr])
+        same = rng.normal(0, 0.3, 2) + rng.normal(0, 0.1, (count, 2))
+        chroma = np.concatenate([same, chroma])
+    order = np.argsort(-snr, kind="stable")
+    peaks = peaks_of(xy[order], snr[order], chroma[order], rng.normal(0, 0.5, len(xy)))
+    return xy[order] @ np.array([1, 1j]), peaks, np.argsort(order)[:count].tolist()
 
 
-def clutter(count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Places and strengths of specks, the strongest first; strengths fall off as a square."""
-    z = rng.uniform(-320, 320, count) + 1j * rng.uniform(-240, 240, count)
-    return z, np.sort(MIN_SNR * rng.random(count) ** -0.5)[::-1]
-
-
-def dock(points: np.ndarray, range_m: float, rng: np.random.Generator) -> np.ndarray:
-    """Places of the markers, (n,)."""
-    yaw = np.radians(rng.uniform(-20, 20))
+def seen(points: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Pixels of a dock at a likely pose."""
+    range_m, yaw = rng.uniform(1.5, 4), np.radians(rng.uniform(-20, 20))
     turn = np.array([[np.cos(yaw), 0, np.sin(yaw)], [0, 1, 0], [-np.sin(yaw), 0, np.cos(yaw)]])
-    seen = points @ turn.T + (0.05 * range_m, 0.02 * range_m, range_m)
-    return 512 * (seen[:, 0] + 1j * seen[:, 1]) / seen[:, 2]
+    return CAMERA.project(points @ turn.T + (0.05 * range_m, 0.02 * range_m, range_m))
 
 
-def among(
-    markers: np.ndarray, strength: float, z: np.ndarray, snr: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Markers among specks, strongest first, and where each marker went."""
-    both = np.concatenate([markers, z])
-    strengths = np.concatenate([np.full(len(markers), strength), snr])
-    order = np.argsort(-strengths, kind="stable")
-    return both[order], strengths[order], np.argsort(order)[: len(markers)]
+def peaks_of(xy: np.ndarray, snr: np.ndarray, chroma: np.ndarray, likeness: np.ndarray) -> Peaks:
+    """The first MAX_PROMISING of them promising."""
+    nothing, promising = np.zeros(len(xy), np.uint8), np.arange(min(len(xy), MAX_PROMISING))
+    return Peaks(xy, snr, np.ones(len(xy)), chroma, likeness, nothing, promising)
 
 
-def colours(
-    snr: np.ndarray, rng: np.random.Generator, markers: np.ndarray | None = None
-) -> np.ndarray:
-    """Chroma: of all kinds for specks, of one for ``markers`` among them."""
-    chroma = rng.normal(0, 0.6, (len(snr), 2))
-    if markers is not None:
-        chroma[markers] = rng.normal(0, 0.3, 2) + rng.normal(0, 0.1, (len(markers), 2))
-    return chroma
+def look(count: int, z: np.ndarray, peaks: Peaks, least: float) -> Candidates:
+    return Search(MODELS[count], SIGMA_PX, AREA).find(z, peaks, least)
 
 
-@pytest.mark.parametrize("points", [RECTANGLE, FIVE])
-@pytest.mark.parametrize("range_m", [1.5, 3.0, 4.0])
-def test_the_dock_is_the_best_rigid_candidate_among_specks(
-    points: np.ndarray, range_m: float
-) -> None:
-    """Where a marker out of the plane stands depends on the view: a speck there may look
-    as likely, and is told by the pose, as in the method."""
-    rng = np.random.default_rng(1)
+@pytest.mark.parametrize(
+    ("count", "specks", "least"), [(3, 7, -25.0), (4, 5, -25.0), (5, 3, -30.0), (8, 0, -60.0)]
+)
+def test_it_finds_all_sets_and_their_evidence(count: int, specks: int, least: float) -> None:
+    rng, total = np.random.default_rng(count), 0
     for _ in range(5):
-        noise = rng.normal(0, 0.3, (len(points), 2)) @ np.array([1, 1j])
-        markers = dock(points, range_m, rng) + noise
-        z, snr, places = among(markers, 15.0, *clutter(40, rng))
-        found = search(len(points)).find(z, snr, colours(snr, rng, places), 0.0)
-        rigid_ones = [m for m in found.members[:MAX_TRIALS] if is_rigid(points, z[m], 0.3)]
-        assert rigid_ones[0].tolist() == places.tolist()
-        assert found.evidence[0] > np.log(100)
+        z, peaks, _ = frame(DOCKS[count], specks, rng)
+        found = look(count, z, peaks, least)
+        expected = sets_of(MODELS[count], SIGMA_PX, AREA, z, peaks, least)
+        assert {tuple(m) for m in found.members.tolist()} == set(expected)
+        evidence = [expected[tuple(m)] for m in found.members.tolist()]
+        assert found.evidence == pytest.approx(evidence, rel=1e-6, abs=1e-5)
+        assert found.evidence.tolist() == sorted(found.evidence, reverse=True)
+        total += len(expected)
+    assert total >= 5
 
 
-def is_rigid(points: np.ndarray, z: np.ndarray, sigma_px: float) -> bool:
-    pixels = np.column_stack([z.real, z.imag]) + CAMERA.matrix[:2, 2]
-    poses = estimates(Sighting(points, pixels, np.full(len(points), sigma_px), CAMERA))
-    return bool(poses) and rigid(poses[0], len(points))
+def test_only_promising_peaks_are_markers_but_all_are_clutter() -> None:
+    rng = np.random.default_rng(12)
+    z, peaks, places = frame(RECTANGLE, 8, rng)
+    promising = np.array(sorted([*places, 2 if 2 not in places else 3]))
+    some = peaks_of(peaks.xy, peaks.snr, peaks.chroma, peaks.likeness)
+    some = Peaks(some.xy, some.snr, some.noise, some.chroma, some.likeness, some.best, promising)
+    found = look(4, z, some, -25.0)
+    evidence = dict(zip(map(tuple, found.members.tolist()), found.evidence.tolist(), strict=True))
+    expected = sets_of(MODELS[4], SIGMA_PX, AREA, z, some, -25.0)
+    assert evidence == pytest.approx(expected, abs=1e-5)
+    assert tuple(places) in expected
 
 
-def test_nothing_better_is_overlooked() -> None:
-    """Against all ways to name four of nine peaks."""
-    rng = np.random.default_rng(2)
-    model = MODELS[4]
-    for _ in range(6):
-        markers = dock(RECTANGLE, rng.uniform(2, 4), rng)
-        z, snr, places = among(markers, 8.0, *clutter(5, rng))
-        chroma = colours(snr, rng, places)
-        found = search(4).find(z, snr, chroma, -20.0)
-        near = Clutter.of(np.abs(z[:, None] - z), snr, AREA)
-        alike = Colours.of(chroma, snr, near.near)
-        order = list(model.order)
-        every = np.array([p for p in permutations(range(len(z)), 4)])
-        base = z[every[:, order[1]]] - z[every[:, order[0]]]
-        size = (base / model.base.direction).real > 0
-        best = max(
-            (
-                model.log_base(z[m[order[1]]] - z[m[order[0]]])
-                + model.log_shape(z[m][order][None], np.full((1, 4), SIGMA_PX))[0]
-                + log_alike(snr[m][order][None], model.along)[0]
-                + near.rarity_of(m[None])[0]
-                + alike.log_common(m[None])[0]
-                - np.log(AREA),
-                m.tolist(),
-            )
-            for m in every[size]
-        )
-        assert found.members[0].tolist() == best[1]
-        assert found.evidence[0] == pytest.approx(best[0], abs=1.0)
+@pytest.mark.parametrize("size", [1, 3, 4, 8])
+def test_the_evidence_of_given_sets_is_that_of_the_formulas(size: int) -> None:
+    rng = np.random.default_rng(size)
+    for specks in (size, 12, 40, MAX_PEAKS):
+        z, peaks, _ = frame(None, specks, rng)
+        along = rng.uniform(-1, 1, size)
+        sets = np.array([rng.permutation(specks)[:size] for _ in range(5)])
+        expected = [log_looks(z, peaks, AREA, tuple(m), along) for m in sets.tolist()]
+        assert evidence_of_sets(z, peaks, AREA, sets, along) == pytest.approx(expected, abs=1e-5)
+
+
+@pytest.mark.parametrize("count", [4, 5, 8])
+def test_the_dock_is_the_best_candidate_among_specks(count: int) -> None:
+    """But for a marker out of the plane: where it stands depends on the view, and a speck there
+    may look as likely."""
+    rng, first = np.random.default_rng(1), 0
+    for _ in range(10):
+        z, peaks, places = frame(DOCKS[count], 40, rng)
+        found = look(count, z, peaks, np.log(100))
+        assert places in found.members.tolist()
+        first += found.members[0].tolist() == places
+    assert first >= 8
 
 
 def test_clutter_is_taken_for_the_dock_no_more_often_than_stated(record_property: Any) -> None:
     rng = np.random.default_rng(3)
-    frames, evidence = 400, []
+    frames, evidence = 1000, []
     for _ in range(frames):
-        z, snr = clutter(int(rng.integers(10, 60)), rng)
-        found = search(4).find(z, snr, colours(snr, rng), np.log(3))
+        z, peaks, _ = frame(None, int(rng.integers(10, 60)), rng)
+        peaks.likeness[:] = 0  # of clutter, it averages to a ratio of one by itself
+        found = look(4, z, peaks, np.log(3))
         evidence.append(found.evidence[0] if len(found.evidence) else -np.inf)
     for ratio in (3, 10, 30):
         share = np.mean(np.array(evidence) >= np.log(ratio))
@@ -143,45 +147,87 @@ def test_clutter_is_taken_for_the_dock_no_more_often_than_stated(record_property
 
 @pytest.mark.parametrize("count", [0, 1, 3, 4])
 def test_few_peaks_are_no_error(count: int) -> None:
-    rng = np.random.default_rng(count)
-    z, snr = clutter(count, rng)
-    assert len(search(4).find(z, snr, colours(snr, rng), 0.0).evidence) == 0
+    z, peaks, _ = frame(None, count, np.random.default_rng(count))
+    assert look(4, z, peaks, 0.0).members.shape == (0, 4)
+
+
+def test_too_many_peaks_are_an_error() -> None:
+    z, peaks, _ = frame(None, 200, np.random.default_rng(0))
+    with pytest.raises(ValueError, match="200 peaks"):
+        look(4, z, peaks, 0.0)
+    with pytest.raises(ValueError, match="200 peaks"):
+        evidence_of_sets(z, peaks, AREA, np.array([[0, 1, 2]]), np.zeros(3))
+
+
+def test_a_frame_full_of_rings_takes_bounded_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seven rings of eight lamps, alike in all, and any set wanted: more than can be weighed."""
+    rng = np.random.default_rng(9)
+    rings = np.concatenate([seen(DOCKS[8], rng) for _ in range(7)])
+    specks = rng.uniform((0, 0), (640, 480), (MAX_PEAKS - 56, 2))
+    xy = np.concatenate([rings, specks])
+    flat = np.zeros((MAX_PEAKS, 2))
+    peaks = peaks_of(xy, np.full(MAX_PEAKS, 9.0), flat, flat[:, 0])
+    z = xy @ np.array([1, 1j])
+    found = look(8, z, peaks, -1000.0)
+    assert found.weighed == search.MAX_WEIGHED
+    assert len(found.evidence) == search.MAX_SETS
+    assert len(np.unique(found.members, axis=0)) == search.MAX_SETS
+    monkeypatch.setattr(search, "MAX_WEIGHED", 100)
+    assert look(8, z, peaks, -1000.0).weighed == 100
+
+
+def test_of_more_sets_than_are_kept_the_best_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    z, peaks, _ = frame(RECTANGLE, 20, np.random.default_rng(10))
+    every = look(4, z, peaks, -30.0)
+    assert 4 < len(every.evidence) < search.MAX_SETS
+    monkeypatch.setattr(search, "MAX_SETS", 4)
+    best = look(4, z, peaks, -30.0)
+    assert best.members.tolist() == every.members[:4].tolist()
+    assert best.evidence.tolist() == every.evidence[:4].tolist()
+    assert best.looks.tolist() == every.looks[:4].tolist()
 
 
 def test_a_dock_upside_down_is_none() -> None:
-    rng = np.random.default_rng(4)
     tall = RECTANGLE + np.array([(0.2, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0)])  # no symmetry
-    model = ShapeModel.learn(tall, CAMERA)
-    upright, mirrored = dock(tall, 2.0, rng), dock(tall * (1, -1, 1), 2.0, rng)
-    one = Search(model, SIGMA_PX, AREA)
-    for places, least in ((upright, 1), (mirrored, 0)):
-        z, snr, markers = among(places, 20.0, *clutter(10, rng))
-        found = one.find(z, snr, colours(snr, rng, markers), np.log(300))
-        assert min(1, len(found.evidence)) == least
+    one = Search(ShapeModel.learn(tall, CAMERA), SIGMA_PX, AREA)
+    for points, least in ((tall, 1), (tall * (1, -1, 1), 0)):
+        z, peaks, _ = frame(points, 10, np.random.default_rng(4), strength=20.0)
+        assert min(1, len(one.find(z, peaks, np.log(300)).evidence)) == least
 
 
-def test_likeness_is_the_integral_over_the_common_strength_and_the_slope() -> None:
+def alike(snr: np.ndarray, along: np.ndarray) -> float:
+    """What is left of the evidence of a set that is all there is in the frame."""
+    count = len(snr)
+    order = np.argsort(-snr)
+    flat = np.zeros((count, 2))
+    peaks = peaks_of(flat, snr[order], flat, flat[:, 0])
+    z, sets = flat[:, 0] + 0j, np.arange(count)[None]
+    looks = evidence_of_sets(z, peaks, AREA, sets, along[order])
+    return float(looks[0] - evidence_of_sets(z, peaks, AREA, sets, 0 * along)[0])
+
+
+def test_strengths_are_integrated_over_the_common_one_and_the_slope() -> None:
+    """Their density with places along the dock over that with none."""
     rng = np.random.default_rng(5)
     common = np.linspace(np.log(MIN_SNR) - 4, np.log(STRONGEST) + 4, 2_001)[:, None, None]
     slope = np.linspace(-6 * SLOPE, 6 * SLOPE, 401)[:, None]
-    cell = float((common[1] - common[0]).item() * (slope[1] - slope[0]).item())
     along = placed_along(RECTANGLE)
-    prior = np.exp(-0.5 * (slope[:, 0] / SLOPE) ** 2) / (SLOPE * np.sqrt(2 * np.pi))
+    prior = np.exp(-0.5 * (slope[:, 0] / SLOPE) ** 2)
+
+    def integral(snr: np.ndarray, along: np.ndarray) -> float:
+        off = (np.log(snr) - common - slope * along) / np.sqrt(SPREAD**2 + 1 / snr**2)
+        return float((np.exp(-0.5 * (off**2).sum(axis=2)) * prior).sum())
+
     for _ in range(5):
         snr = rng.uniform(4, 60, 4)
-        spread = np.sqrt(SPREAD**2 + 1 / snr**2)
-        off = (np.log(snr) - common - slope * along) / spread
-        densities = (np.exp(-0.5 * off**2) / (spread * np.sqrt(2 * np.pi))).prod(axis=2)
-        expected = np.log((densities * prior).sum() * cell / np.log(STRONGEST / MIN_SNR))
-        assert log_alike(snr[None], along)[0] == pytest.approx(expected, abs=1e-3)
+        expected = np.log(integral(snr, along) / integral(snr, 0 * along))
+        assert alike(snr, along) == pytest.approx(expected, abs=1e-3)
 
 
 def test_the_dimmer_end_of_a_dock_is_no_sign_of_clutter() -> None:
     along = placed_along(RECTANGLE)
     left_dim, mixed = np.exp(0.4 * along), np.exp(0.4 * np.array([1, 1, -1, -1]) * np.abs(along))
-    assert log_alike(20 * left_dim[None], along)[0] > log_alike(20 * mixed[None], along)[
-        0
-    ] + np.log(2)
+    assert alike(20 * left_dim, along) > alike(20 * mixed, along) + np.log(2)
 
 
 def test_places_along_a_dock_are_one_at_its_ends() -> None:
@@ -189,50 +235,36 @@ def test_places_along_a_dock_are_one_at_its_ends() -> None:
     assert sorted(np.sign(placed_along(RECTANGLE))) == [-1, -1, 1, 1]
 
 
+def rarity(xy: np.ndarray, snr: np.ndarray, member: int) -> float:
+    """Of one peak: all but the density of its strength, which depends on nothing else."""
+    flat = np.zeros((len(xy), 2))
+    peaks = peaks_of(xy, snr, flat, flat[:, 0])
+    z, one, here = xy @ np.array([1, 1j]), np.array([[member]]), np.zeros(1)
+    return float(
+        evidence_of_sets(z, peaks, AREA, one, here)[0] + np.log(np.log(STRONGEST / MIN_SNR))
+    )
+
+
 def test_rarity_is_one_over_the_density_of_clutter() -> None:
     """An even scatter of a known density, at the strength that all but a few exceed."""
     rng = np.random.default_rng(6)
-    totals = []
+    ratios = []
     for _ in range(30):
-        z, snr = clutter(64, rng)
-        near = Clutter.of(np.abs(z[:, None] - z), snr, AREA)
-        expected = 2 * 64 / AREA * (MIN_SNR / snr) ** 2  # the tail's derivative by log strength
-        totals.append(np.exp(-near.rarity(0))[32:] / expected[32:])
-    assert np.mean(totals) == pytest.approx(1, abs=0.25)
-
-
-def test_members_are_not_each_others_clutter() -> None:
-    z, snr = clutter(6, np.random.default_rng(7))
-    close = np.concatenate([np.zeros(4), z])
-    near = Clutter.of(np.abs(close[:, None] - close), np.append(np.full(4, snr[0]), snr), AREA)
-    alone = Clutter.of(np.zeros((1, 1)), np.array([MIN_SNR]), AREA)
-    together = near.rarity_of(np.array([[0, 1, 2, 3]]))
-    assert together == pytest.approx(4 * alone.rarity(0))
+        xy = rng.uniform((0, 0), (640, 480), (64, 2))
+        snr = np.sort(MIN_SNR * rng.random(64) ** -0.5)[::-1]
+        for member in range(32, 64):
+            expected = 2 * 64 / AREA * (MIN_SNR / snr[member]) ** 2  # the tail's derivative
+            ratios.append(np.exp(-rarity(xy, snr, member)) / expected)
+    assert np.mean(ratios) == pytest.approx(1, abs=0.25)
 
 
 def test_what_outshines_all_clutter_is_the_rarer_for_it_to_a_limit() -> None:
-    z, _ = clutter(6, np.random.default_rng(8))
-    apart = np.abs(z[:, None] - z)
-    rarity = [
-        Clutter.of(apart, np.array([10.0 * times, 10, 9, 8, 7, 6]), AREA).rarity_of(ONE)[0]
-        for times in (1, 2, 100, 1000)
+    xy = np.random.default_rng(8).uniform((0, 0), (640, 480), (20, 2))
+    others = np.linspace(10, 3, 19)
+    times = [
+        rarity(xy, np.concatenate([[10.0 * times], others]), 0) for times in (1, 1.5, 1e3, 1e6, 1e9)
     ]
-    assert rarity[1] - rarity[0] == pytest.approx(np.log(4), abs=0.2)
-    assert rarity[0] < rarity[1] < rarity[2] == pytest.approx(rarity[3])
-
-
-ONE = np.array([[0]])
-
-
-@pytest.mark.parametrize("points", [RECTANGLE, FIVE])
-def test_two_markers_bound_how_alike_a_set_with_them_can_be(points: np.ndarray) -> None:
-    rng = np.random.default_rng(11)
-    along = placed_along(points)
-    snr = MIN_SNR * 10 ** rng.uniform(0, 2, (2000, len(points)))
-    alike = log_alike(snr, along)
-    most = log_alike(np.full((1, len(points)), STRONGEST), along)
-    for a, b in permutations(range(len(points)), 2):
-        bound = most + log_unlike(snr[:, a], snr[:, b], float(along[b] - along[a]))
-        assert (alike <= bound + 1e-9).all()
-        # It is no idle bound: the others can do what they like.
-        assert np.median(bound) < most - 0.5
+    assert times[0] < times[1] < times[2] - np.log(4)
+    # The share beyond falls no further; only its derivative by log strength does.
+    assert times[2] - times[0] < np.log(1 / clutter.MOST_FALL) + 2
+    assert times[4] - times[3] < 0.5

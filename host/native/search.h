@@ -1,0 +1,132 @@
+/* Constellations among the peaks of a frame, ranked by the evidence that they
+ * are the dock.
+ *
+ * The evidence for a set of peaks is the natural logarithm of a likelihood
+ * ratio: the density of such places, strengths and colours if the peaks are a
+ * dock's markers, over their density if they are clutter.  Summed over all
+ * sets of peaks of a Poisson clutter these ratios are expected to come to one
+ * (Mecke's formula: Last and Penrose, Lectures on the Poisson Process, 2017,
+ * chapter 4).  By Markov's inequality, therefore, a frame without a dock has a
+ * set with a ratio of 1/e or more with a probability of at most e, however
+ * many sets there are to choose from.
+ *
+ * Nothing here allocates memory or keeps anything between two calls; all
+ * arrays belong to the caller.  Calls from several threads are independent. */
+#ifndef SEARCH_H
+#define SEARCH_H
+
+#include <stdint.h>
+
+/* A frame with more is refused; at most 70 kB of stack are used. */
+enum { SEARCH_MAX_PEAKS = 128, SEARCH_MAX_PROMISING = 64 };
+
+/* What is supposed of markers' and of clutter's light.  The values, with the
+ * reasons for them, stand in chromadock.robust: evidence, chroma, clutter. */
+typedef struct {
+    /* Standard deviations of the log strengths of a dock's markers about a
+     * common value, and of their change from the dock's middle to its end; the
+     * range that the common value's logarithm is evenly spread over. */
+    double strength_spread, strength_slope, strength_log_range;
+    /* Standard deviations of the chroma of a dock's markers, radians: always,
+     * and at a signal to noise of 1; how often a marker's colour is not the
+     * dock's. */
+    double colour_spread, colour_noise, colour_disturbed;
+    /* What is supposed of clutter's chroma before any peak is seen: worth so
+     * many peaks, with this standard deviation about zero. */
+    double colour_supposed, colour_wide;
+    /* What is supposed of the tail of clutter's strengths: the number of peaks
+     * above a strength falls as this power of it; worth so many peaks. */
+    double clutter_exponent, clutter_supposed;
+    /* The least factor by which a peak is rarer for outshining all clutter. */
+    double clutter_most_fall;
+    /* Radius of a peak's neighbourhood, as a share of the frame's side. */
+    double clutter_neighbourhood;
+} evidence_constants_t;
+
+/* Peaks of one frame at one scale, the strongest first. */
+typedef struct {
+    int32_t count;        /* 0..SEARCH_MAX_PEAKS */
+    const double *places; /* count x 2: x, y in pixels */
+    const double *snr;    /* count: signal to noise, above 0 */
+    const double *chroma; /* count x 2: radians */
+    const double
+        *likeness;    /* count: log ratio of a lamp's looks to clutter's */
+    double least_snr; /* from which on all of the frame's peaks are here */
+    double area;      /* of the frame, square pixels */
+} evidence_peaks_t;
+
+/* The evidence of given sets in all but their places.
+ *
+ * members: sets x size indices of peaks, those of a set all different.
+ * along: size places along the dock, -1..1, of the markers at the members.
+ * evidence: receives one value a set: log density of the strengths, sum of the
+ * members' likeness, log likelihood ratio of their colours, and minus the log
+ * density of as many peaks of clutter, in square pixels to the power of size.
+ * Returns 0, or -1 if there are too many peaks. */
+int32_t evidence_of_sets(const evidence_constants_t *constants,
+                         const evidence_peaks_t *peaks, int32_t sets,
+                         int32_t size, const int32_t *members,
+                         const double *along, double *evidence);
+
+/* Where one marker is seen from another: its displacement d is at least
+ * shortest and at most longest pixels long, and at an angle to the unit vector
+ * (x, y) whose tangent is at most slope. */
+typedef struct {
+    double shortest, longest, x, y, slope;
+} search_window_t;
+
+/* A rectangle of complex numbers. */
+typedef struct {
+    double left, right, top, bottom;
+} search_box_t;
+
+/* What a dock of n markers looks like to one camera, for peaks of one scale.
+ *
+ * Its first two markers, p and q, are the base; the shape of the others is
+ * b = (z - z_p) / (z_q - z_p), in complex numbers (Bookstein, Statistical
+ * Science 1 (1986) 181): m = n - 2 of them.  Views are told apart by the
+ * base's length into spans, and each of these by the side that is seen into
+ * facets; in each of these classes the shape is normal.  Its covariance C is
+ * given by the inverse W of its Cholesky factor L, C = L L', so that
+ * w = offset + W b is standard normal, and the two components of it that a
+ * marker adds depend on its own b and on those before it alone. */
+typedef struct {
+    int32_t markers; /* n, 3 or more */
+    int32_t spans, facets;
+    search_window_t base, side; /* of q, and of the third marker, from p */
+    double slack;               /* pixels: what windows allow for errors */
+    double roll_rad;            /* standard deviation of the base's direction */
+    double log_spread;          /* log of the base's range of log lengths, times
+                                 * roll_rad sqrt(2 pi) */
+    double gate; /* w squared is less than this for each marker of a dock */
+    const double *along;    /* n: places along the dock, -1..1 */
+    const double *edges;    /* spans - 1 lengths between them, pixels */
+    const double *log_norm; /* spans x facets: log of the facet's share in the
+                             * span, times the density of b at its peak */
+    const double *offset;   /* spans x facets x 2m: minus W times the mean */
+    const double *whiten;   /* spans x facets x 2m x 2m: W, lower triangular;
+                             * Re b_3, Im b_3, Re b_4, ... */
+    const search_box_t *thirds; /* spans: where b_3 passes some facet's gate */
+} search_dock_t;
+
+/* Find the sets of promising peaks with an evidence of least or more.
+ *
+ * promising: promising_count (at most SEARCH_MAX_PROMISING) indices of peaks,
+ * ascending; markers are looked for among them, all peaks are clutter.
+ * most_sets: the best so many are kept.
+ * most_weighed: after weighing so many sets, complete or not, the search gives
+ * up, which bounds its time; it begins with the strongest peaks.
+ * members: receives most_sets x n indices of peaks, those of p, q, the third...
+ * evidence, looks: receive most_sets values each, the best set first: all of
+ * the evidence, and the part of it that evidence_of_sets gives.
+ * weighed: receives how many sets were weighed.
+ * Returns the number of sets found, which all differ; -1 if there are too many
+ * peaks. */
+int32_t search_find(const evidence_constants_t *constants,
+                    const search_dock_t *dock, const evidence_peaks_t *peaks,
+                    int32_t promising_count, const int32_t *promising,
+                    double least, int32_t most_sets, int32_t most_weighed,
+                    int32_t *members, double *evidence, double *looks,
+                    int32_t *weighed);
+
+#endif

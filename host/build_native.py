@@ -57,5 +57,5 @@ ffi.set_source(
     include_dirs=[str(NATIVE)],
     # Loops over cells become vector instructions of any processor of the kind.  Nothing asks
     # for errno or for floating-point exceptions, which would prevent it.
-    extra_compile_args=["-std=c11", "-O3", "-fno-math-errno", "-fno-trapping-math"],
+    extra_compile_args=["-std=c11", "-O3", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassociative-math"],
 )

@@ -303,12 +303,14 @@ static void measure_fluctuation(const front_frame_t *frame)
                                (i % 4 == 0 ? QUANTUM : 0.0);
 }
 
-int front_light(front_frame_t *frame, const uint8_t *bgr, const float *linear)
+/* Linear light of all scales. */
+static bool make_light(const front_frame_t *frame, const uint8_t *bgr,
+                       const float *linear)
 {
     const front_layout_t *layout = &frame->layout;
     float *row = malloc((size_t)layout->columns * sizeof(float));
     if (row == NULL)
-        return -1;
+        return false;
     decode(frame, bgr, linear);
     for (int c = 0; c < 3; c++) {
         float *light = channel(layout, frame->light, c);
@@ -319,8 +321,61 @@ int front_light(front_frame_t *frame, const uint8_t *bgr, const float *linear)
             repeat_outermost(layout, light, scale);
     }
     free(row);
-    measure_fluctuation(frame);
-    return 0;
+    return true;
+}
+
+/* ---- Filters ---- */
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double product[3])
+{
+    product[0] = a[1] * b[2] - a[2] * b[1];
+    product[1] = a[2] * b[0] - a[0] * b[2];
+    product[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* The matched filter of colour s in noise of covariance S, S^-1 s / sqrt(s'
+ * S^-1 s): the most signal of that colour for noise of 1 (North, Proc. IEEE 51
+ * (1963) 1016); in colour space it takes the water's own hue out. */
+static void match(const double *covariance, const double *s, float *weights)
+{
+    double product[3], whitened[3];
+    for (int i = 0; i < 3; i++) {
+        const double *next = covariance + (i + 1) % 3 * 3;
+        cross(next, covariance + (i + 2) % 3 * 3, product);
+        /* Times the determinant, which is positive. */
+        whitened[i] = dot(product, s);
+    }
+    const double determinant = dot(product, covariance + 6);
+    const double scale = 1 / sqrt(determinant * dot(s, whitened));
+    for (int i = 0; i < 3; i++)
+        weights[i] = (float)(scale * whitened[i]);
+}
+
+/* Two filters blind to colour s, whose noise is 1 and independent of each
+ * other's: two vector products with s.  The noise of both, and of the matched
+ * filter, is independent since f S f' = 0 for any two of them. */
+static void look_across(const double *covariance, const double *s,
+                        double *across)
+{
+    const int darkest =
+        s[0] <= s[1] ? (s[0] <= s[2] ? 0 : 2) : (s[1] <= s[2] ? 1 : 2);
+    const double axis[3] = {darkest == 0, darkest == 1, darkest == 2};
+    double turned[3];
+    cross(axis, s, across);
+    for (int i = 0; i < 2; i++, across += 3) {
+        for (int c = 0; c < 3; c++)
+            turned[c] = dot(covariance + 3 * c, across);
+        if (i == 0)
+            cross(s, turned, across + 3);
+        const double scale = 1 / sqrt(dot(turned, across));
+        for (int c = 0; c < 3; c++)
+            across[c] *= scale;
+    }
 }
 
 /* ---- Response ---- */
@@ -370,13 +425,13 @@ static void take_surround_away(work_t *work, int wide)
             const float *restrict below = row_of(drawn, p.after);
             const float *restrict light = row_of(work->light[c], y);
             float *restrict added = row_of(work->added[c], y);
-            float highest = 0;
+            int high = 0;
             for (int x = 0; x < whole.columns; x++) {
                 added[x] =
                     light[x] - (above[x] + p.share * (below[x] - above[x]));
-                highest = greater(highest, light[x]);
+                high |= light[x] >= (float)FRONT_CLIPPED_LIGHT;
             }
-            work->clipped[y] |= highest >= (float)FRONT_CLIPPED_LIGHT;
+            work->clipped[y] |= high != 0;
         }
     }
 }
@@ -537,6 +592,8 @@ static void keep_largest(work_t *work, const float (*weights)[3])
     int *restrict which = work->which;
     for (int y = 0; y < whole.rows; y++) {
         float *restrict snr = row_of(whole, y);
+        for (int x = 0; x < columns; x++)
+            snr[x] = -FLT_MAX;
         for (int hue = 0; hue < FRONT_HUES; hue++) {
             const image_t drawn = drawn_out(work->drawn, whole, BLOCK, hue);
             const place_t p = place_of(y, whole.rows, drawn.rows);
@@ -544,20 +601,16 @@ static void keep_largest(work_t *work, const float (*weights)[3])
             const float *restrict below = row_of(drawn, p.after);
             answer_row(work, y, weights[hue]);
             const float *restrict answer = work->answer;
-            if (hue == 0) {
-                for (int x = 0; x < columns; x++) {
-                    const float noise =
-                        above[x] + p.share * (below[x] - above[x]);
-                    snr[x] = answer[x] / noise;
-                    which[x] = 0;
-                }
-                continue;
-            }
+            const float less = hue == 0 ? 0.0F : (float)FRONT_UNEXPECTED;
             for (int x = 0; x < columns; x++) {
                 const float noise = above[x] + p.share * (below[x] - above[x]);
-                const float own = answer[x] / noise - (float)FRONT_UNEXPECTED;
-                which[x] = own > snr[x] ? hue : which[x];
-                snr[x] = greater(own, snr[x]);
+                const float own = answer[x] / noise - less;
+                const float other = snr[x];
+                /* All bits, or none: a branch would keep the loop from being
+                 * made of vector instructions. */
+                const int larger = -(own > other);
+                which[x] = (which[x] & ~larger) | (hue & larger);
+                snr[x] = greater(own, other);
             }
         }
         uint8_t *restrict best = work->best + y * whole.stride;
@@ -612,8 +665,16 @@ static bool respond_at_scale(front_frame_t *frame, int scale)
     return enough;
 }
 
-int front_respond(front_frame_t *frame)
+int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
+                  const double *signatures)
 {
+    if (!make_light(frame, bgr, linear))
+        return -1;
+    measure_fluctuation(frame);
+    for (int hue = 0; hue < FRONT_HUES; hue++)
+        match(frame->covariance, signatures + 3 * hue,
+              frame->weights + 3 * hue);
+    look_across(frame->covariance, signatures, frame->across);
     for (int scale = 0; scale < frame->layout.scales; scale++) {
         if (!respond_at_scale(frame, scale))
             return -1;

@@ -1,16 +1,14 @@
 /* The robust detector's front end: from a picture to the peaks that look like
  * lamps.
  *
- * front_light() makes linear light of the picture at several scales and
- * measures how it fluctuates.  The caller makes matched filters of that.
- * front_respond() tells how much each cell shines in units of its local noise,
- * and front_find() which cells stand out and how like a lamp each of them
- * looks.
+ * front_respond() makes linear light of the picture at several scales, matched
+ * filters of how that fluctuates, and tells how much each cell shines in units
+ * of its local noise.  front_find() tells which cells stand out, and how like a
+ * lamp each of them looks.
  *
  * All arrays are the caller's; what a function needs for itself it allocates
  * and frees again.  Nothing is kept between calls, so any number of frames may
- * be worked on at once.  A function that can fail returns 0, or -1 if there is
- * no memory. */
+ * be worked on at once. */
 #ifndef FRONT_H
 #define FRONT_H
 
@@ -123,16 +121,17 @@ typedef struct {
     uint8_t *promising; /* 1 if the peak is to be searched for markers */
 } front_peaks_t;
 
-/* Fills in light and covariance.
+/* Fills in all of a frame but its layout.  Returns 0, or -1 if there is no
+ * memory.
  *
  * bgr: the picture in finest cells, 3 bytes each, row by row without gaps.
- * linear: the linear light of each of the 256 values of a byte. */
-int front_light(front_frame_t *frame, const uint8_t *bgr, const float *linear);
+ * linear: the linear light of each of the 256 values of a byte.
+ * signatures: FRONT_HUES x 3, the light of lamps of each hue, the expected
+ * first. */
+int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
+                  const double *signatures);
 
-/* Fills in added, snr and best from light and weights. */
-int front_respond(front_frame_t *frame);
-
-/* Finds the peaks of a frame whose members are all filled in.
+/* Finds the peaks of a frame that front_respond() has filled in.
  *
  * with_looks: FRONT_DESIGN coefficients of the regression that knows the looks.
  * without: FRONT_BASE coefficients of that which knows strength and scale. */

@@ -113,18 +113,9 @@ def respond(frame_bgr: NDArray[np.uint8], hue: int, focal_px: float) -> Response
     covariance = np.empty((3, 3))
     arrays = light, added, snr, best, covariance, weights, across
     native = ffi.new("front_frame_t *", (layout.native[0], *map(pointer, arrays)))
-    _check(lib.front_light(native, pointer(finest), pointer(_LINEAR)))
-    signatures = _signatures(hue)
-    weights[:] = _matched_filters(covariance, signatures)
-    across[:] = _across(covariance, signatures[0])
-    _check(lib.front_respond(native))
-    return Response(weights, across, covariance, layout, light, added, snr, best, native)
-
-
-def _check(status: int) -> None:
-    """Raise what a compiled function could not say."""
-    if status != 0:
+    if lib.front_respond(native, pointer(finest), pointer(_LINEAR), pointer(_signatures(hue))):
         raise MemoryError("no memory for a frame's response")
+    return Response(weights, across, covariance, layout, light, added, snr, best, native)
 
 
 def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -138,29 +129,3 @@ def _signatures(hue: int) -> NDArray[np.float64]:
     """(HUES, 3) linear BGR: the purest colours of the hues that are looked for, ``hue`` first."""
     hues = [(hue + HUE_RANGE * k // HUES) % HUE_RANGE for k in range(HUES)]
     return np.array([_LINEAR[list(rgb_from_hsv(h, 255, 255))[::-1]] for h in hues], np.float64)
-
-
-def _matched_filters(
-    covariance: NDArray[np.float64], signatures: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Weights S^-1 s / sqrt(s' S^-1 s): most signal of each colour s in noise of covariance S.
-
-    North, Proc. IEEE 51 (1963) 1016; in colour space it takes the water's own hue out.
-    """
-    whitened = np.linalg.solve(covariance, signatures.T).T
-    scale = np.sqrt((signatures * whitened).sum(axis=1, keepdims=True))
-    return np.asarray(whitened / scale)
-
-
-def _across(covariance: NDArray[np.float64], signature: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(2, 3) filters blind to colour s, whose noise is 1 and independent of each other's.
-
-    Two vector products with s; the noise of both, and of the matched filter, is independent
-    since f S f' = 0 for any two of them.
-    """
-    b, g, r = signature
-    product = np.array([[0, -r, g], [r, 0, -b], [-g, b, 0]])
-    first = product[signature.argmin()]
-    both = np.stack([first, product @ covariance @ first])
-    variances = (both @ covariance * both).sum(axis=1)
-    return np.asarray(both / np.sqrt(variances)[:, None])

@@ -16,6 +16,7 @@ from cffi import FFI
 
 HERE = Path(__file__).resolve().parent
 NATIVE = HERE / "native"
+# What is in folders of NATIVE is for its own sources alone.
 HEADERS = sorted(NATIVE.glob("*.h"))
 INTEGER, NUMBER = "#define {} ...", "static const double {};"
 
@@ -53,9 +54,9 @@ ffi.set_source(
     "".join(f'#include "{header.name}"\n' for header in HEADERS),
     # Relative to setup.py's folder, as setuptools wants it.
     sources=[os.path.relpath(path, HERE) for path in sorted(NATIVE.glob("*.c"))],
-    depends=[os.path.relpath(header, HERE) for header in HEADERS],
+    depends=[os.path.relpath(header, HERE) for header in sorted(NATIVE.rglob("*.h"))],
     include_dirs=[str(NATIVE)],
     # Loops over cells become vector instructions of any processor of the kind.  Nothing asks
     # for errno or for floating-point exceptions, which would prevent it.
-    extra_compile_args=["-std=c11", "-O3", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassociative-math"],
+    extra_compile_args=["-std=c11", "-O3", "-fno-math-errno", "-fno-trapping-math"],
 )

@@ -54,15 +54,26 @@ static image_t drawn_out(float *first, image_t whole, int wide, int which)
                      whole.columns};
 }
 
+/* Draws some images of parts, in work->coarse, out into work->drawn. */
+static void draw_all_out(work_t *work, int wide, int images)
+{
+    image_t coarse = parts_of(work->coarse, work->snr, wide, 0);
+    image_t drawn = drawn_out(work->drawn, work->snr, wide, 0);
+    coarse.rows *= images;
+    drawn.rows *= images;
+    cells_draw_out(coarse, drawn, work->places);
+}
+
 /* The light that each cell adds to that of the water about it. */
 static void take_surround_away(work_t *work, int wide)
 {
-    const image_t whole = work->light[0];
+    const image_t whole = work->snr;
+    for (int c = 0; c < 3; c++)
+        cells_shrink(work->light[c], parts_of(work->coarse, whole, wide, c),
+                     work->answer);
+    draw_all_out(work, wide, 3);
     for (int c = 0; c < 3; c++) {
-        const image_t coarse = parts_of(work->coarse, whole, wide, 0);
-        const image_t drawn = drawn_out(work->drawn, whole, wide, 0);
-        cells_shrink(work->light[c], coarse, work->answer);
-        cells_draw_out(coarse, drawn, work->places);
+        const image_t drawn = drawn_out(work->drawn, whole, wide, c);
         for (int y = 0; y < whole.rows; y++) {
             const place_t p = cells_place(y, whole.rows, drawn.rows);
             const float *restrict above = row_of(drawn, p.before);
@@ -88,16 +99,18 @@ static void answer_row(const work_t *work, int y, const float weights[3])
     const float *restrict r = row_of(work->added[2], y);
     float *restrict answer = work->answer;
     const int columns = work->snr.columns;
-    for (int x = 0; x < columns; x++)
-        answer[x] = filtered(weights, false, b[x], g[x], r[x]);
-    if (!work->clipped[y])
+    if (!work->clipped[y]) {
+        for (int x = 0; x < columns; x++)
+            answer[x] = filtered(weights, false, b[x], g[x], r[x]);
         return;
-    const float *blue = row_of(work->light[0], y);
-    const float *green = row_of(work->light[1], y);
-    const float *red = row_of(work->light[2], y);
+    }
+    const float *restrict blue = row_of(work->light[0], y);
+    const float *restrict green = row_of(work->light[1], y);
+    const float *restrict red = row_of(work->light[2], y);
     for (int x = 0; x < columns; x++) {
-        if (is_clipped(blue[x], green[x], red[x]))
-            answer[x] = filtered(weights, true, b[x], g[x], r[x]);
+        const float whole = filtered(weights, false, b[x], g[x], r[x]);
+        const float part = filtered(weights, true, b[x], g[x], r[x]);
+        answer[x] = is_clipped(blue[x], green[x], red[x]) ? part : whole;
     }
 }
 
@@ -138,9 +151,8 @@ static void measure_noise(work_t *work, const float (*weights)[3])
             noise.first[i] = NORMAL * lesser(value, MOST_NOISE * median);
         }
         cells_smooth(noise, work->spare);
-        cells_draw_out(noise, drawn_out(work->drawn, whole, BLOCK, hue),
-                       work->places);
     }
+    draw_all_out(work, BLOCK, FRONT_HUES);
 }
 
 /* The largest answer over its noise, and whose it is. */
@@ -150,6 +162,7 @@ static void keep_largest(work_t *work, const float (*weights)[3])
     const int columns = whole.columns;
     int *restrict which = work->which;
     for (int y = 0; y < whole.rows; y++) {
+        const place_t p = cells_place(y, whole.rows, parts(whole.rows, BLOCK));
         float *restrict snr = row_of(whole, y);
         for (int x = 0; x < columns; x++) {
             snr[x] = -FLT_MAX;
@@ -157,7 +170,6 @@ static void keep_largest(work_t *work, const float (*weights)[3])
         }
         for (int hue = 0; hue < FRONT_HUES; hue++) {
             const image_t drawn = drawn_out(work->drawn, whole, BLOCK, hue);
-            const place_t p = cells_place(y, whole.rows, drawn.rows);
             const float *restrict above = row_of(drawn, p.before);
             const float *restrict below = row_of(drawn, p.after);
             answer_row(work, y, weights[hue]);

@@ -55,4 +55,5 @@ contrast: setup-demo ## Choose the mapping contrast anew from simulated waters, 
 
 clean: ## Remove everything that was installed, built or written here
 	rm -rf .venv build out .pio .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	rm -rf host/build host/*.egg-info host/chromadock/dialect.py firmware/bindings/build firmware/bindings/*.egg-info
+	rm -rf host/build host/*.egg-info host/chromadock/dialect.py host/chromadock/_native.*
+	rm -rf firmware/bindings/build firmware/bindings/*.egg-info

@@ -1,4 +1,4 @@
-"""Only what pyproject.toml cannot say: a module is generated before the package is built."""
+"""Only what pyproject.toml cannot say: a module is generated and an extension compiled."""
 
 from __future__ import annotations
 
@@ -58,4 +58,7 @@ class Build(build):
     sub_commands = [("build_dialect", None), *build.sub_commands]  # noqa: RUF012 - setuptools' own way
 
 
-setup(cmdclass={"build": Build, "build_dialect": BuildDialect})
+setup(
+    cmdclass={"build": Build, "build_dialect": BuildDialect},
+    cffi_modules=["build_native.py:ffi"],
+)

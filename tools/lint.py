@@ -18,9 +18,10 @@ from step import ROOT, Outcome, missing, show_step
 
 # The programs that pip installed beside this Python.
 BIN = Path(sys.executable).parent
-C_FOLDERS = ("firmware", "tests/firmware", "tests/fuzz", "tests/shell")
+C_FOLDERS = ("firmware", "host/native", "tests/firmware", "tests/fuzz", "tests/shell")
 C_SUFFIXES = (".c", ".h", ".cpp")
 DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
+NATIVE = ROOT / "host" / "native"
 SHELL = ROOT / "firmware" / "esp32cam"
 VENDOR = ROOT / "tests" / "shell" / "vendor"
 MAVLINK = ROOT / "build" / "mavlink" / "c"
@@ -121,17 +122,17 @@ def cppcheck() -> Outcome:
 
 
 def compiles_with(compiler: str) -> Outcome:
-    """Compile dockcore with its own flags; a warning fails (a user's build only prints it)."""
+    """Compile dockcore and the host's C with dockcore's flags; a warning fails (a user's build
+    only prints it)."""
     reason = missing(compiler)
     if reason is not None:
         return Outcome(skips=[(f"{compiler} -Werror", reason)])
     manifest = json.loads((DOCKCORE / "library.json").read_text())
-    sources = sorted((DOCKCORE / "src").glob("*.c"))
+    flags = [*manifest["build"]["flags"], "-Werror", "-isystem", MAVLINK]
     total = Outcome(passed=1)
     with tempfile.TemporaryDirectory() as scratch:
-        for source in sources:
+        for source in [*sorted((DOCKCORE / "src").glob("*.c")), *sorted(NATIVE.glob("*.c"))]:
             target = Path(scratch) / f"{source.stem}.o"
-            flags = [*manifest["build"]["flags"], "-Werror", "-isystem", MAVLINK]
             one = check(compiler, *flags, "-c", source, "-o", target)
             if one.failed:
                 total = Outcome(failed=1, output=total.output + one.output)
@@ -139,12 +140,12 @@ def compiles_with(compiler: str) -> Outcome:
 
 
 def gcc() -> Outcome:
-    """Compile dockcore for this computer with gcc."""
+    """Compile the C for this computer with gcc."""
     return compiles_with("gcc")
 
 
 def clang() -> Outcome:
-    """Compile dockcore for this computer with clang."""
+    """Compile the C for this computer with clang."""
     return compiles_with("clang")
 
 

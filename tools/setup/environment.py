@@ -18,6 +18,7 @@ OPENCV4 = BUILD / "opencv4"
 MAVPROXY = BUILD / "mavproxy"
 PEERS = BUILD / "bench"
 DIALECT = HOST / "chromadock" / "dialect.py"
+NATIVE = [HOST / "native", HOST / "build_native.py"]
 # What both packages generate their MAVLink code from, when they are built.
 MAVLINK = [ROOT / "shared" / "chromadock.xml", ROOT / "shared" / "mavlink.py"]
 
@@ -34,16 +35,22 @@ def make_environment() -> None:
 
 
 def install_host() -> None:
-    """Install the host package, editable, with the packages it needs."""
+    """Install the host package, editable, with the packages it needs; compile its C anew when any
+    of that changed."""
     requirements = TOOLS / "requirements-demo.txt"
     package = [HOST / "pyproject.toml", HOST / "setup.py"]
-    stamp = Stamp(VENV, "host", [CONSTRAINTS, requirements, *package, *MAVLINK])
-    if stamp.fresh() and DIALECT.is_file():
+    stamp = Stamp(VENV, "host", [CONSTRAINTS, requirements, *package, *NATIVE, *MAVLINK])
+    compiled = list((HOST / "chromadock").glob("_native.*.so"))
+    if stamp.fresh() and DIALECT.is_file() and compiled:
         return
     with step("Python packages and the host package"):
         # First what builds the packages: they are built without isolation, so
         # that the pinned build tools are used and nothing is fetched twice.
         pip_install("-r", requirements)
+        # setuptools would take object files of other flags or headers from there.
+        shutil.rmtree(HOST / "build", ignore_errors=True)
+        for extension in compiled:
+            extension.unlink()
         pip_install("--no-build-isolation", "-e", HOST)
     stamp.set()
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from chromadock import method
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.robust.peaks import gained
+from chromadock.robust.layout import BORDER
 from chromadock.robust.refine import CLIPPED
 from chromadock.robust.response import Response, linear
 
@@ -17,6 +17,8 @@ _PURE = linear(np.array([[rgb_from_hsv(int(h), 255, 255)[::-1] for h in _HUES]],
 
 # Cells about a marker whose light is a lamp's: 5 x 5.
 _NEAR = np.mgrid[-2:3, -2:3].reshape(2, 1, -1)
+# Down and across, cells, to the places that tell what is behind a cell.
+_RING = BORDER * np.array([p for p in np.ndindex(3, 3) if p != (1, 1)]) - BORDER
 _CLIPPED = 0.7  # of full scale: the mean of a cell with a clipped pixel is below 1
 # Mean of unclipped cells beside clipped ones, in standard deviations: what is so near to a lamp
 # that it clips is lit by it, so that less is not its light.
@@ -56,10 +58,13 @@ def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | 
     column = np.clip(across[:, None] + _NEAR[0], 0, width - 1)
     row = np.clip(down[:, None] + _NEAR[1], 0, height - 1)
     at = response.layout.at(scale, row, column).ravel()
-    whole = response.light.reshape(-1, 3)[at].max(axis=1) < _CLIPPED
+    light = response.light_at(at)
+    whole = light.max(axis=1) < _CLIPPED
     if not whole.any():
         return None
-    added = gained(response, at)[whole].sum(axis=0)
+    # What is behind a lamp: the second darkest of eight places about it.
+    around = response.light_at(at + (_RING * (response.layout.shape[1], 1)).sum(axis=1)[:, None])
+    added = (light - np.partition(around, 1, axis=0)[1])[whole].sum(axis=0)
     whitened = np.linalg.solve(response.covariance, _PURE.T.astype(np.float64))
     answer = (added @ whitened) / np.sqrt((_PURE.T * whitened).sum(axis=0))
     best = int(answer.argmax())

@@ -16,7 +16,7 @@ from chromadock.hue_search import OFFSET_STEP
 from chromadock.look import Found, Look
 from chromadock.method import HUE_RANGE
 from chromadock.robust.chroma import SPREAD
-from chromadock.robust.layout import FINEST_CELL
+from chromadock.robust.layout import FINE_CELL
 from chromadock.robust.method import RobustMethod
 from chromadock.robust.response import respond
 from chromadock.robust.shape import focal_px
@@ -98,7 +98,7 @@ def test_markers_at_3_m_have_one_chroma_whatever_hue_is_looked_for(off: int) -> 
         )
         hue = (marker_hue(seen, "ternary") + off) % HUE_RANGE
         response = respond(scene.frame_bgr, hue, focal_px(CAMERA))
-        column, row = np.floor((scene.pixels + 0.5) / FINEST_CELL).astype(np.intp).T
-        places = response.layout.places(response.layout.at(0, row, column))
-        spreads.append(response.chroma(response.added(places)).std(axis=0, ddof=1))
+        column, row = np.floor((scene.pixels + 0.5) / FINE_CELL).astype(np.intp).T
+        added = response.added_at(response.layout.at(0, row, column))
+        spreads.append(response.chroma(added).std(axis=0, ddof=1))
     assert np.median(spreads) < SPREAD

@@ -1,0 +1,183 @@
+#include "internal/cells.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Smoothing has a standard deviation of so many cells, and ends at so many. */
+#define SMOOTHING 1.5
+#define REACH 6
+
+void cells_repeat_outermost(const front_layout_t *layout, float *image,
+                            int scale)
+{
+    const image_t inner = at_scale(layout, image, scale);
+    const int rest = inner.stride - inner.columns - 2 * FRONT_BORDER;
+    for (int y = 0; y < inner.rows; y++) {
+        float *row = row_of(inner, y);
+        for (int x = 1; x <= FRONT_BORDER; x++) {
+            row[-x] = row[0];
+            row[inner.columns - 1 + x] = row[inner.columns - 1];
+        }
+        memset(row + inner.columns + FRONT_BORDER, 0,
+               (size_t)rest * sizeof(float));
+    }
+    const size_t whole = (size_t)inner.stride * sizeof(float);
+    for (int y = 1; y <= FRONT_BORDER; y++) {
+        memcpy(row_of(inner, -y) - FRONT_BORDER,
+               row_of(inner, 0) - FRONT_BORDER, whole);
+        memcpy(row_of(inner, inner.rows - 1 + y) - FRONT_BORDER,
+               row_of(inner, inner.rows - 1) - FRONT_BORDER, whole);
+    }
+}
+
+span_t cells_span(int k, int n, int parts)
+{
+    const int begin = k * n, end = begin + n; /* in cells over parts */
+    const int first = begin / parts, last = (end - 1) / parts;
+    const float unit = 1.0F / (float)parts;
+    return (span_t){first, last, unit * (float)((first + 1) * parts - begin),
+                    unit * (float)(end - last * parts)};
+}
+
+float cells_share(const span_t *span, int cell)
+{
+    if (cell == span->first)
+        return span->head;
+    return cell == span->last ? span->tail : 1.0F;
+}
+
+void cells_sum_parts(const float *restrict in, int n, float *restrict out,
+                     int parts, float factor)
+{
+    if (n == 2 * parts) {
+        for (int k = 0; k < parts; k++)
+            out[k] = factor * (in[2 * k] + in[2 * k + 1]);
+        return;
+    }
+    for (int k = 0; k < parts; k++) {
+        const span_t span = cells_span(k, n, parts);
+        float sum = span.head * in[span.first];
+        for (int x = span.first + 1; x < span.last; x++)
+            sum += in[x];
+        if (span.last > span.first)
+            sum += span.tail * in[span.last];
+        out[k] = factor * sum;
+    }
+}
+
+float cells_mean_factor(int rows, int columns, image_t out)
+{
+    return (float)out.rows / (float)rows * (float)out.columns / (float)columns;
+}
+
+void cells_shrink(image_t in, image_t out, float *restrict sums)
+{
+    const float factor = cells_mean_factor(in.rows, in.columns, out);
+    for (int k = 0; k < out.rows; k++) {
+        const span_t span = cells_span(k, in.rows, out.rows);
+        memset(sums, 0, (size_t)in.columns * sizeof(float));
+        for (int y = span.first; y <= span.last; y++) {
+            const float share = cells_share(&span, y);
+            const float *restrict row = row_of(in, y);
+            for (int x = 0; x < in.columns; x++)
+                sums[x] += share * row[x];
+        }
+        cells_sum_parts(sums, in.columns, row_of(out, k), out.columns, factor);
+    }
+}
+
+place_t cells_place(int i, int m, int n)
+{
+    const float at = ((float)i + 0.5F) * (float)n / (float)m - 0.5F;
+    if (at <= 0.0F)
+        return (place_t){0, 0, 0.0F};
+    const int before = least((int)at, n - 1);
+    return (place_t){before, least(before + 1, n - 1), at - (float)before};
+}
+
+void cells_draw_out(image_t in, image_t out, place_t *restrict places)
+{
+    for (int x = 0; x < out.columns; x++)
+        places[x] = cells_place(x, out.columns, in.columns);
+    for (int y = 0; y < in.rows; y++) {
+        const float *restrict from = row_of(in, y);
+        float *restrict to = row_of(out, y);
+        for (int x = 0; x < out.columns; x++) {
+            const place_t p = places[x];
+            to[x] = from[p.before] + p.share * (from[p.after] - from[p.before]);
+        }
+    }
+}
+
+int cells_smooth_room(int rows, int columns)
+{
+    return (rows + 1) * columns + 2 * REACH;
+}
+
+/* Index of a row or column that is as far inside n as i is outside. */
+static int mirrored(int i, int n)
+{
+    while (n > 1 && (i < 0 || i >= n))
+        i = i < 0 ? -i : 2 * (n - 1) - i;
+    return n > 1 ? i : 0;
+}
+
+void cells_smooth(image_t image, float *room)
+{
+    float kernel[2 * REACH + 1], sum = 0;
+    for (int i = -REACH; i <= REACH; i++)
+        sum += kernel[i + REACH] =
+            (float)exp(-0.5 * i * i / (SMOOTHING * SMOOTHING));
+    for (int i = 0; i <= 2 * REACH; i++)
+        kernel[i] /= sum;
+    const int columns = image.columns;
+    const image_t across = {room, columns, image.rows, columns};
+    float *restrict wide = room + image.rows * columns;
+    memset(across.first, 0, (size_t)(image.rows * columns) * sizeof(float));
+    for (int y = 0; y < image.rows; y++) {
+        const float *from = row_of(image, y);
+        float *restrict to = row_of(across, y);
+        for (int x = -REACH; x < columns + REACH; x++)
+            wide[x + REACH] = from[mirrored(x, columns)];
+        for (int i = 0; i <= 2 * REACH; i++) {
+            for (int x = 0; x < columns; x++)
+                to[x] += kernel[i] * wide[x + i];
+        }
+    }
+    for (int y = 0; y < image.rows; y++) {
+        float *restrict to = row_of(image, y);
+        memset(to, 0, (size_t)columns * sizeof(float));
+        for (int i = -REACH; i <= REACH; i++) {
+            const float *restrict from =
+                row_of(across, mirrored(y + i, image.rows));
+            for (int x = 0; x < columns; x++)
+                to[x] += kernel[i + REACH] * from[x];
+        }
+    }
+}
+
+/* Hoare's FIND. */
+float cells_kth_least(float *values, int n, int k)
+{
+    int low = 0, high = n - 1;
+    while (low < high) {
+        const float pivot = values[k];
+        int i = low, j = high;
+        while (i <= j) {
+            while (values[i] < pivot)
+                i++;
+            while (pivot < values[j])
+                j--;
+            if (i <= j) {
+                const float value = values[i];
+                values[i++] = values[j];
+                values[j--] = value;
+            }
+        }
+        if (j < k)
+            low = i;
+        if (k < i)
+            high = j;
+    }
+    return values[k];
+}

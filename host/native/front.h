@@ -1,0 +1,153 @@
+/* The robust detector's front end: from a picture to the peaks that look like
+ * lamps.
+ *
+ * front_respond() makes linear light of the picture at several scales, matched
+ * filters of how that fluctuates, and tells how much each cell shines in units
+ * of its local noise.  front_find() tells which cells stand out, and how like a
+ * lamp each of them looks.
+ *
+ * All arrays are the caller's; what a function needs for itself it allocates
+ * and frees again.  Nothing is kept between calls, so any number of frames may
+ * be worked on at once. */
+#ifndef FRONT_H
+#define FRONT_H
+
+#include <stdint.h>
+
+/* Hues that are looked for at once, evenly about the circle from the expected
+ * one: every lamp is within 30 degrees of one of them, and a matched filter
+ * loses little by that. */
+#define FRONT_HUES 6
+
+/* Cells about each scale that repeat its outermost ones. */
+#define FRONT_BORDER 3
+
+/* Scales of a frame at most: cells of 2 to 256 pixels. */
+#define FRONT_SCALES 8
+
+/* Pixels: a frame has at least so many rows and columns, two surrounds. */
+#define FRONT_MIN_SIDE 64
+
+/* The surround is at least so many pixels wide: water changes little over it,
+ * and no far marker fills it.  It is at least so many cells wide as well: a
+ * lamp that fills a cell does not fill the surround. */
+#define FRONT_SURROUND_PIXELS 32
+#define FRONT_SURROUND_CELLS 4
+
+/* Linear light of a cell, 0 to 1, from which on its channel may have been
+ * clipped. */
+#define FRONT_CLIPPED_LIGHT 0.8
+
+/* Signal to noise that a hue other than the expected one counts less: the
+ * largest of several normal variables exceeds one of them by about so much. */
+#define FRONT_UNEXPECTED 0.4
+
+/* Least signal to noise of a peak at the finest scale.  Below it noise alone
+ * has so many peaks that no constellation could stand out.  At a coarser scale
+ * it is as much more as the cells are wider: what fills them is near. */
+#define FRONT_MIN_SNR 3.0
+
+/* The strongest peaks of each scale that are kept, so that any frame takes
+ * bounded time, and how many of these are searched for markers. */
+#define FRONT_MAX_PEAKS 112
+#define FRONT_MAX_PROMISING 56
+
+/* What is seen about a peak: its looks, all about 0 to 1, 0 if it is a lamp. */
+enum {
+    /* One less four times determinant over squared trace of the Hessian: 0 for
+     * a round top, 1 on a ridge. */
+    FRONT_FLATNESS,
+    /* The weaker of two opposite sides over the peak, where that is largest. */
+    FRONT_RIDGE,
+    /* Mean of eight places three cells off, over the peak. */
+    FRONT_HALO,
+    /* The second largest of them, over the peak. */
+    FRONT_NEIGHBOUR,
+    /* The least on the way to the higher peak that is joined best, over the
+     * peak; 0 if there is no higher one nearby. */
+    FRONT_SADDLE,
+    /* Light that is taken away in some channel, of all that is changed. */
+    FRONT_MISSING,
+    FRONT_LOOKS
+};
+
+/* A lamp that outshines the noise by more looks the same. */
+#define FRONT_MOST_SNR 60.0
+
+/* Columns of the regressions that weigh the looks: of strength and scale alone,
+ * and of all. */
+#define FRONT_BASE 5
+#define FRONT_DESIGN 29
+
+/* How one image holds a frame at all scales, the finest first, below each
+ * other. About each scale is a border, so that what is around a cell is at the
+ * same distances in memory wherever the cell is. */
+typedef struct {
+    int rows, columns;        /* of the image */
+    int scales;               /* 1 to FRONT_SCALES */
+    int cell[FRONT_SCALES];   /* pixels that a cell is wide */
+    int top[FRONT_SCALES];    /* row of the first cell */
+    int height[FRONT_SCALES]; /* rows without the border */
+    int width[FRONT_SCALES];  /* columns without the border */
+} front_layout_t;
+
+/* What is known of a frame.  Images have layout.rows x layout.columns cells;
+ * those of three channels are three of them one after the other, blue, green
+ * and red.  Light is linear, 0 to 1.  The border of light and snr repeats the
+ * outermost cells; that of added and best is not set. */
+typedef struct {
+    front_layout_t layout;
+    float *light;       /* 3 images: the mean light of each cell */
+    float *added;       /* 3 images: the same less the light of the surround */
+    float *snr;         /* the largest answer of a filter, in units of noise */
+    uint8_t *best;      /* which filter gave it, 0 to FRONT_HUES - 1 */
+    double *covariance; /* 3 x 3: of the fluctuation of finest cells */
+    float *weights;     /* FRONT_HUES x 3: the matched filters, such that finest
+                         * cells fluctuate by about 1; first the expected hue's */
+    double *across; /* 2 x 3: filters that are blind to the expected colour */
+} front_frame_t;
+
+/* Peaks, those of each scale from FRONT_MAX_PEAKS times the scale on, the
+ * strongest first.  Arrays have FRONT_MAX_PEAKS places for each scale. */
+typedef struct {
+    int count[FRONT_SCALES];
+    double *xy;         /* x and y: pixels of the frame */
+    double *snr;        /* signal to noise of the brightest 2 x 2 cells */
+    double *noise;      /* standard deviation of the filtered light of a cell */
+    double *chroma;     /* two angles off the expected colour, radians */
+    double *looks;      /* FRONT_LOOKS for each peak */
+    double *likeness;   /* log likelihood ratio of a lamp to clutter */
+    uint8_t *best;      /* the filter that answers most */
+    uint8_t *promising; /* 1 if the peak is to be searched for markers */
+} front_peaks_t;
+
+/* Fills in all of a frame but its layout.  Returns 0, or -1 if there is no
+ * memory.
+ *
+ * bgr: the picture in finest cells, 3 bytes each, row by row without gaps.
+ * linear: the linear light of each of the 256 values of a byte.
+ * signatures: FRONT_HUES x 3, the light of lamps of each hue, the expected
+ * first.
+ * unexpected: signal to noise that other hues count less: FRONT_UNEXPECTED, or
+ * 0 where none is expected before the others. */
+int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
+                  const double *signatures, float unexpected);
+
+/* Finds the peaks of a frame that front_respond() has filled in.
+ *
+ * with_looks: FRONT_DESIGN coefficients of the regression that knows the looks.
+ * without: FRONT_BASE coefficients of that which knows strength and scale. */
+void front_find(const front_frame_t *frame, const double *with_looks,
+                const double *without, front_peaks_t *peaks);
+
+/* Two angles each, in radians, by which n lights are off the expected colour,
+ * where the frame's noise is the same in all colours.  added: 3 numbers for
+ * each, blue first. */
+void front_chroma(const front_frame_t *frame, const double *added, int n,
+                  double *chroma);
+
+/* One row of the regressions' design: FRONT_DESIGN numbers, of which the first
+ * FRONT_BASE tell strength and scale alone.  looks: FRONT_LOOKS numbers. */
+void front_design(const double *looks, double snr, int scale, double *row);
+
+#endif

@@ -1,0 +1,176 @@
+#include "internal/cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Neighbours at this lag, in finest cells, share neither a marker nor JPEG's
+ * blocks of 8 pixels. */
+#define LAG 2
+/* The fluctuation is measured on one row in so many: 2,300 cells fix six
+ * numbers to 3%. */
+#define ROW_STEP 8
+/* Differences beyond so many times their mean are edges and lamps.  What
+ * fluctuates a little more than noise, foam and caustics, counts: the filter
+ * had better be blind to its colour as well. */
+#define EDGE 2.5F
+/* Variance of linear light that 8 bits leave in dark water:
+ * (2.2 * 0.05^1.2 / 255)^2 / 12. */
+#define QUANTUM 5e-9
+
+static void decode(const front_frame_t *frame, const uint8_t *restrict bgr,
+                   const float *restrict linear)
+{
+    const front_layout_t *layout = &frame->layout;
+    const int image = layout->rows * layout->columns;
+    for (int y = 0; y < layout->height[0]; y++) {
+        float *restrict blue =
+            frame->light + first_cell(layout, 0) + y * layout->columns;
+        float *restrict green = blue + image;
+        float *restrict red = green + image;
+        for (int x = 0; x < layout->width[0]; x++, bgr += 3) {
+            blue[x] = linear[bgr[0]];
+            green[x] = linear[bgr[1]];
+            red[x] = linear[bgr[2]];
+        }
+    }
+}
+
+/* Second difference along a row, which a slope does not have. */
+static float bend(const float *row)
+{
+    return row[0] + row[2 * LAG] - 2.0F * row[LAG];
+}
+
+/* Covariance of the channels of single cells about the light nearby: from
+ * second differences along rows without the large ones, which are edges. */
+static void measure_fluctuation(const front_frame_t *frame)
+{
+    const front_layout_t *layout = &frame->layout;
+    const int width = layout->width[0] - 2 * LAG;
+    image_t light[3];
+    for (int c = 0; c < 3; c++)
+        light[c] = at_scale(layout, channel(layout, frame->light, c), 0);
+    double total = 0;
+    int cells = 0;
+    for (int y = ROW_STEP / 2; y < light[0].rows; y += ROW_STEP) {
+        float sum = 0;
+        for (int c = 0; c < 3; c++) {
+            const float *row = row_of(light[c], y);
+            for (int x = 0; x < width; x++)
+                sum += fabsf(bend(row + x));
+        }
+        total += (double)sum;
+        cells += width;
+    }
+    const float limit = EDGE * (float)(total / cells);
+    double product[3][3] = {{0}};
+    int kept = 0;
+    for (int y = ROW_STEP / 2; y < light[0].rows; y += ROW_STEP) {
+        const float *b = row_of(light[0], y), *g = row_of(light[1], y),
+                    *r = row_of(light[2], y);
+        float bb = 0, gg = 0, rr = 0, bg = 0, br = 0, gr = 0, count = 0;
+        for (int x = 0; x < width; x++) {
+            float blue = bend(b + x), green = bend(g + x), red = bend(r + x);
+            const float size = fabsf(blue) + fabsf(green) + fabsf(red);
+            const float keep = size <= limit ? 1.0F : 0.0F;
+            count += keep;
+            bb += keep * blue * blue;
+            gg += keep * green * green;
+            rr += keep * red * red;
+            bg += keep * blue * green;
+            br += keep * blue * red;
+            gr += keep * green * red;
+        }
+        const float sums[3][3] = {{bb, bg, br}, {bg, gg, gr}, {br, gr, rr}};
+        for (int i = 0; i < 9; i++)
+            product[i / 3][i % 3] += (double)sums[i / 3][i % 3];
+        kept += (int)count;
+    }
+    /* A second difference of independent values has 1 + 1 + 4 times their
+     * variance. */
+    for (int i = 0; i < 9; i++)
+        frame->covariance[i] = product[i / 3][i % 3] / (6.0 * most(kept, 1)) +
+                               (i % 4 == 0 ? QUANTUM : 0.0);
+}
+
+/* Linear light of all scales. */
+bool light_make(const front_frame_t *frame, const uint8_t *bgr,
+                const float *linear)
+{
+    const front_layout_t *layout = &frame->layout;
+    float *row = malloc((size_t)layout->columns * sizeof(float));
+    if (row == NULL)
+        return false;
+    decode(frame, bgr, linear);
+    for (int c = 0; c < 3; c++) {
+        float *light = channel(layout, frame->light, c);
+        for (int scale = 1; scale < layout->scales; scale++)
+            cells_shrink(at_scale(layout, light, scale - 1),
+                         at_scale(layout, light, scale), row);
+        for (int scale = 0; scale < layout->scales; scale++)
+            cells_repeat_outermost(layout, light, scale);
+    }
+    free(row);
+    measure_fluctuation(frame);
+    return true;
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double product[3])
+{
+    product[0] = a[1] * b[2] - a[2] * b[1];
+    product[1] = a[2] * b[0] - a[0] * b[2];
+    product[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* The matched filter of colour s in noise of covariance S, S^-1 s / sqrt(s'
+ * S^-1 s): the most signal of that colour for noise of 1 (North, Proc. IEEE 51
+ * (1963) 1016); in colour space it takes the water's own hue out. */
+static void match(const double *covariance, const double *s, float *weights)
+{
+    double product[3], whitened[3];
+    for (int i = 0; i < 3; i++) {
+        const double *next = covariance + (i + 1) % 3 * 3;
+        cross(next, covariance + (i + 2) % 3 * 3, product);
+        /* Times the determinant, which is positive. */
+        whitened[i] = dot(product, s);
+    }
+    const double determinant = dot(product, covariance + 6);
+    const double scale = 1 / sqrt(determinant * dot(s, whitened));
+    for (int i = 0; i < 3; i++)
+        weights[i] = (float)(scale * whitened[i]);
+}
+
+/* Two filters blind to colour s, whose noise is 1 and independent of each
+ * other's: two vector products with s.  The noise of both, and of the matched
+ * filter, is independent since f S f' = 0 for any two of them. */
+static void look_across(const double *covariance, const double *s,
+                        double *across)
+{
+    const int darkest =
+        s[0] <= s[1] ? (s[0] <= s[2] ? 0 : 2) : (s[1] <= s[2] ? 1 : 2);
+    const double axis[3] = {darkest == 0, darkest == 1, darkest == 2};
+    double turned[3];
+    cross(axis, s, across);
+    for (int i = 0; i < 2; i++, across += 3) {
+        for (int c = 0; c < 3; c++)
+            turned[c] = dot(covariance + 3 * c, across);
+        if (i == 0)
+            cross(s, turned, across + 3);
+        const double scale = 1 / sqrt(dot(turned, across));
+        for (int c = 0; c < 3; c++)
+            across[c] *= scale;
+    }
+}
+
+void filters_make(const front_frame_t *frame, const double *signatures)
+{
+    for (int hue = 0; hue < FRONT_HUES; hue++)
+        match(frame->covariance, signatures + 3 * hue,
+              frame->weights + 3 * hue);
+    look_across(frame->covariance, signatures, frame->across);
+}

@@ -1,0 +1,258 @@
+#include "internal/cells.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The local noise is the mean of blocks of so many cells squared, ... */
+#define BLOCK 8
+/* ... at least and at most so many times the frame's median: no less than that
+ * of almost all the frame, no more than what markers themselves may raise it
+ * to. */
+#define LEAST_NOISE 0.9F
+#define MOST_NOISE 2.5F
+/* Filtered light: no frame has less noise than this. */
+#define NO_NOISE 1e-3F
+/* Standard deviation over mean absolute value of a normal variable. */
+#define NORMAL 1.2533141F
+
+/* One scale of a frame on the way to its response. */
+typedef struct {
+    image_t light[3], added[3];
+    image_t snr;
+    uint8_t *best;
+    bool *clipped;   /* of each row, whether it may have a clipped cell */
+    float *sums;     /* FRONT_HUES rows */
+    float *answer;   /* one row */
+    int *which;      /* one row */
+    place_t *places; /* one row */
+    float *coarse;   /* up to FRONT_HUES images of surrounds or of blocks */
+    float *drawn;    /* the same as wide as the scale */
+    float *spare;    /* room for smoothing one of the former */
+} work_t;
+
+/* How many parts, about so many cells wide, n cells are divided into. */
+static int parts(int n, int wide)
+{
+    return most(1, n / wide);
+}
+
+/* Images of such parts, one after the other in memory. */
+static image_t parts_of(float *first, image_t whole, int wide, int which)
+{
+    const int rows = parts(whole.rows, wide);
+    const int columns = parts(whole.columns, wide);
+    return (image_t){first + which * rows * columns, columns, rows, columns};
+}
+
+/* The same drawn out to the columns of the whole. */
+static image_t drawn_out(float *first, image_t whole, int wide, int which)
+{
+    const int rows = parts(whole.rows, wide);
+    return (image_t){first + which * rows * whole.columns, whole.columns, rows,
+                     whole.columns};
+}
+
+/* Draws some images of parts, in work->coarse, out into work->drawn. */
+static void draw_all_out(work_t *work, int wide, int images)
+{
+    image_t coarse = parts_of(work->coarse, work->snr, wide, 0);
+    image_t drawn = drawn_out(work->drawn, work->snr, wide, 0);
+    coarse.rows *= images;
+    drawn.rows *= images;
+    cells_draw_out(coarse, drawn, work->places);
+}
+
+/* The light that each cell adds to that of the water about it. */
+static void take_surround_away(work_t *work, int wide)
+{
+    const image_t whole = work->snr;
+    for (int c = 0; c < 3; c++)
+        cells_shrink(work->light[c], parts_of(work->coarse, whole, wide, c),
+                     work->answer);
+    draw_all_out(work, wide, 3);
+    for (int c = 0; c < 3; c++) {
+        const image_t drawn = drawn_out(work->drawn, whole, wide, c);
+        for (int y = 0; y < whole.rows; y++) {
+            const place_t p = cells_place(y, whole.rows, drawn.rows);
+            const float *restrict above = row_of(drawn, p.before);
+            const float *restrict below = row_of(drawn, p.after);
+            const float *restrict light = row_of(work->light[c], y);
+            float *restrict added = row_of(work->added[c], y);
+            int high = 0;
+            for (int x = 0; x < whole.columns; x++) {
+                added[x] =
+                    light[x] - (above[x] + p.share * (below[x] - above[x]));
+                high |= light[x] >= (float)FRONT_CLIPPED_LIGHT;
+            }
+            work->clipped[y] |= high != 0;
+        }
+    }
+}
+
+/* What a filter answers to a row, in work->answer. */
+static void answer_row(const work_t *work, int y, const float weights[3])
+{
+    const float *restrict b = row_of(work->added[0], y);
+    const float *restrict g = row_of(work->added[1], y);
+    const float *restrict r = row_of(work->added[2], y);
+    float *restrict answer = work->answer;
+    const int columns = work->snr.columns;
+    if (!work->clipped[y]) {
+        for (int x = 0; x < columns; x++)
+            answer[x] = filtered(weights, false, b[x], g[x], r[x]);
+        return;
+    }
+    const float *restrict blue = row_of(work->light[0], y);
+    const float *restrict green = row_of(work->light[1], y);
+    const float *restrict red = row_of(work->light[2], y);
+    for (int x = 0; x < columns; x++) {
+        const float whole = filtered(weights, false, b[x], g[x], r[x]);
+        const float part = filtered(weights, true, b[x], g[x], r[x]);
+        answer[x] = is_clipped(blue[x], green[x], red[x]) ? part : whole;
+    }
+}
+
+/* The local fluctuation of each filter's answers, in work->drawn. */
+static void measure_noise(work_t *work, const float (*weights)[3])
+{
+    const image_t whole = work->snr;
+    const int columns = whole.columns;
+    const image_t blocks = parts_of(work->coarse, whole, BLOCK, 0);
+    const float factor = cells_mean_factor(whole.rows, columns, blocks);
+    for (int k = 0; k < blocks.rows; k++) {
+        const span_t span = cells_span(k, whole.rows, blocks.rows);
+        memset(work->sums, 0, (size_t)(FRONT_HUES * columns) * sizeof(float));
+        for (int y = span.first; y <= span.last; y++) {
+            const float share = cells_share(&span, y);
+            for (int hue = 0; hue < FRONT_HUES; hue++) {
+                answer_row(work, y, weights[hue]);
+                const float *restrict answer = work->answer;
+                float *restrict sums = work->sums + hue * columns;
+                for (int x = 0; x < columns; x++)
+                    sums[x] += share * fabsf(answer[x]);
+            }
+        }
+        for (int hue = 0; hue < FRONT_HUES; hue++) {
+            const image_t noise = parts_of(work->coarse, whole, BLOCK, hue);
+            cells_sum_parts(work->sums + hue * columns, columns,
+                            row_of(noise, k), noise.columns, factor);
+        }
+    }
+    for (int hue = 0; hue < FRONT_HUES; hue++) {
+        const image_t noise = parts_of(work->coarse, whole, BLOCK, hue);
+        const int n = noise.rows * noise.columns;
+        memcpy(work->spare, noise.first, (size_t)n * sizeof(float));
+        const float median =
+            greater(cells_kth_least(work->spare, n, n / 2), NO_NOISE);
+        for (int i = 0; i < n; i++) {
+            const float value = greater(noise.first[i], LEAST_NOISE * median);
+            noise.first[i] = NORMAL * lesser(value, MOST_NOISE * median);
+        }
+        cells_smooth(noise, work->spare);
+    }
+    draw_all_out(work, BLOCK, FRONT_HUES);
+}
+
+/* The largest answer over its noise, and whose it is. */
+static void keep_largest(work_t *work, const float (*weights)[3],
+                         float unexpected)
+{
+    const image_t whole = work->snr;
+    const int columns = whole.columns;
+    int *restrict which = work->which;
+    for (int y = 0; y < whole.rows; y++) {
+        const place_t p = cells_place(y, whole.rows, parts(whole.rows, BLOCK));
+        float *restrict snr = row_of(whole, y);
+        for (int x = 0; x < columns; x++) {
+            snr[x] = -FLT_MAX;
+            which[x] = 0;
+        }
+        for (int hue = 0; hue < FRONT_HUES; hue++) {
+            const image_t drawn = drawn_out(work->drawn, whole, BLOCK, hue);
+            const float *restrict above = row_of(drawn, p.before);
+            const float *restrict below = row_of(drawn, p.after);
+            answer_row(work, y, weights[hue]);
+            const float *restrict answer = work->answer;
+            const float less = hue == 0 ? 0.0F : unexpected;
+            for (int x = 0; x < columns; x++) {
+                const float noise = above[x] + p.share * (below[x] - above[x]);
+                const float own = answer[x] / noise - less;
+                const float other = snr[x];
+                /* All bits, or none: a branch would keep the loop from being
+                 * made of vector instructions. */
+                const int larger = -(own > other);
+                which[x] = (which[x] & ~larger) | (hue & larger);
+                snr[x] = greater(own, other);
+            }
+        }
+        uint8_t *restrict best = work->best + y * whole.stride;
+        for (int x = 0; x < columns; x++)
+            best[x] = (uint8_t)which[x];
+    }
+}
+
+/* Fills in one scale of added, snr and best; false if there is no memory. */
+static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
+{
+    const front_layout_t *layout = &frame->layout;
+    const int wide =
+        most(FRONT_SURROUND_PIXELS / layout->cell[scale], FRONT_SURROUND_CELLS);
+    work_t work = {.snr = at_scale(layout, frame->snr, scale),
+                   .best = frame->best + first_cell(layout, scale)};
+    for (int c = 0; c < 3; c++) {
+        float *light = channel(layout, frame->light, c);
+        float *added = channel(layout, frame->added, c);
+        work.light[c] = at_scale(layout, light, scale);
+        work.added[c] = at_scale(layout, added, scale);
+    }
+    const int columns = work.snr.columns;
+    /* Surrounds may be smaller than blocks, but there are fewer images of them.
+     */
+    const int finest = least(wide, BLOCK);
+    const int parts_down = parts(work.snr.rows, finest);
+    const int parts_across = parts(columns, finest);
+    const int coarse = FRONT_HUES * parts_down * parts_across;
+    const int drawn = FRONT_HUES * parts_down * columns;
+    const int spare = cells_smooth_room(parts_down, parts_across);
+    const int numbers = (FRONT_HUES + 1) * columns + coarse + drawn + spare;
+    float *floats = malloc((size_t)numbers * sizeof(float));
+    int *which = malloc((size_t)columns * sizeof(int));
+    place_t *places = malloc((size_t)columns * sizeof(place_t));
+    bool *clipped = calloc((size_t)work.snr.rows, sizeof(bool));
+    const bool enough = floats && which && places && clipped;
+    if (enough) {
+        work.sums = floats;
+        work.answer = work.sums + FRONT_HUES * columns;
+        work.coarse = work.answer + columns;
+        work.drawn = work.coarse + coarse;
+        work.spare = work.drawn + drawn;
+        work.which = which;
+        work.places = places;
+        work.clipped = clipped;
+        const float (*weights)[3] = (const float (*)[3])frame->weights;
+        take_surround_away(&work, wide);
+        measure_noise(&work, weights);
+        keep_largest(&work, weights, unexpected);
+        cells_repeat_outermost(layout, frame->snr, scale);
+    }
+    free(floats);
+    free(which);
+    free(places);
+    free(clipped);
+    return enough;
+}
+
+int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
+                  const double *signatures, float unexpected)
+{
+    if (!light_make(frame, bgr, linear))
+        return -1;
+    filters_make(frame, signatures);
+    for (int scale = 0; scale < frame->layout.scales; scale++) {
+        if (!respond_at_scale(frame, scale, unexpected))
+            return -1;
+    }
+    return 0;
+}

@@ -1,0 +1,208 @@
+"""The front end of the robust detector in numpy and OpenCV, step by step: what
+``host/native/front.c`` is held against.
+
+It is written for being read, and is ten times as slow.  The tuned numbers that ``front.h`` does
+not have stand here a second time: a test that took them from what it tests would miss a slip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from chromadock.robust.layout import BORDER, Layout
+from chromadock.robust.likeness import coefficients
+from chromadock.robust.response import Response, linear
+
+MIN_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 112, 56
+RING = np.array([(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)])
+
+
+@dataclass(frozen=True)
+class Scale:
+    """One scale: ``light`` and ``added`` (h, w, 3), ``snr`` and ``best`` (h, w)."""
+
+    light: np.ndarray
+    added: np.ndarray
+    snr: np.ndarray
+    best: np.ndarray
+
+
+def resized(image: np.ndarray, width: int, height: int) -> np.ndarray:
+    """Means of what falls into each pixel of a smaller image."""
+    return cv2.resize(image, (max(1, width), max(1, height)), interpolation=cv2.INTER_AREA)
+
+
+def lights_of(frame: np.ndarray, layout: Layout) -> list[np.ndarray]:
+    """Linear light of the cells of all scales."""
+    finest = frame
+    for _ in range(layout.cells[0].bit_length() - 1):
+        finest = resized(finest, finest.shape[1] // 2, finest.shape[0] // 2)
+    lights = [linear(finest)]
+    while len(lights) < len(layout.cells):
+        height, width = lights[-1].shape[:2]
+        lights.append(resized(lights[-1], width // 2, height // 2))
+    return lights
+
+
+def covariance_of(light: np.ndarray) -> np.ndarray:
+    """Of the fluctuation of cells, from second differences along rows."""
+    rows = light[4::8].astype(np.float64)
+    bent = (rows[:, 4:] + rows[:, :-4] - 2 * rows[:, 2:-2]).reshape(-1, 3)
+    size = np.abs(bent).sum(axis=1)
+    kept = bent[size <= 2.5 * size.mean()]
+    return kept.T @ kept / (6 * len(kept)) + 5e-9 * np.eye(3)
+
+
+def scale_of(light: np.ndarray, cell: int, weights: np.ndarray) -> Scale:
+    """What the filters make of one scale."""
+    height, width = light.shape[:2]
+    wide = max(32 // cell, 4)
+    added = light - cv2.resize(resized(light, width // wide, height // wide), (width, height))
+    clipped = light.max(axis=2) >= 0.8
+    snr = []
+    for hue, own in enumerate(weights):
+        answer = np.where(clipped, added @ np.maximum(own, 0), added @ own)
+        noise = resized(np.abs(answer), width // 8, height // 8)
+        typical = max(np.sort(noise, axis=None)[noise.size // 2], 1e-3)
+        noise = cv2.GaussianBlur(np.clip(noise, 0.9 * typical, 2.5 * typical), (0, 0), 1.5)
+        noise = cv2.resize(noise, (width, height)) * np.sqrt(np.pi / 2)
+        snr.append(answer / noise - (0.4 if hue else 0))
+    return Scale(light, added, np.max(snr, axis=0), np.argmax(snr, axis=0))
+
+
+def scales_of(frame: np.ndarray, response: Response) -> list[Scale]:
+    """All scales of a frame, filtered as ``response`` has been."""
+    lights = lights_of(frame, response.layout)
+    cells = response.layout.cells
+    return [scale_of(own, c, response.weights) for own, c in zip(lights, cells, strict=True)]
+
+
+@dataclass(frozen=True)
+class Peak:
+    """One peak; ``looks`` (6,): in the order of ``front.h``."""
+
+    scale: int
+    xy: np.ndarray
+    snr: float
+    noise: float
+    chroma: np.ndarray
+    likeness: float
+    best: int
+    looks: np.ndarray
+
+
+def peaks_of(scales: list[Scale], response: Response) -> list[list[Peak]]:
+    """Peaks of each scale, the strongest first."""
+    cells = response.layout.cells
+    padded = [np.pad(s.snr, BORDER, mode="edge") for s in scales]
+    tops = []
+    for k, scale in enumerate(scales):
+        for y, x in np.argwhere(scale.snr > 0.7 * MIN_SNR * cells[k] / cells[0]):
+            inside = 0 < y < scale.snr.shape[0] - 1 and 0 < x < scale.snr.shape[1] - 1
+            if not inside or scale.snr[y, x] < scale.snr[y - 1 : y + 2, x - 1 : x + 2].max():
+                continue
+            near = around(padded[k], y, x, 1)
+            corners = [near[i] + near[i + 1] + near[(i + 2) % 8] for i in range(0, 8, 2)]
+            strength = (scale.snr[y, x] + max(0, *corners)) / 2
+            if strength >= MIN_SNR * cells[k] / cells[0]:
+                tops.append((k, y, x, strength))
+    tops = sorted(tops, key=lambda top: -top[3])[: 3 * MAX_PEAKS]
+    found: list[list[Peak]] = [[] for _ in scales]
+    for top in tops:
+        mine = [(y, x) for k, y, x, _ in tops if k == top[0]]
+        if len(found[top[0]]) < MAX_PEAKS:
+            found[top[0]].append(peak_of(top, scales[top[0]], padded[top[0]], mine, response))
+    return found
+
+
+def around(padded: np.ndarray, y: int, x: int, radius: int) -> np.ndarray:
+    """(8, ...) values in eight directions, of an image with a border."""
+    down, across = (BORDER + radius * RING + (y, x)).T
+    return padded[down, across]
+
+
+def peak_of(
+    top: tuple[int, int, int, float],
+    scale: Scale,
+    padded: np.ndarray,
+    others: list[tuple[int, int]],
+    response: Response,
+) -> Peak:
+    """All that is told of a peak."""
+    k, y, x, strength = top
+    centre, added = scale.snr[y, x], scale.added[y, x].astype(np.float64)
+    cell = response.layout.cells[k]
+    near = around(padded, y, x, 1)
+    xx, yy = 2 * centre - near[0] - near[4], 2 * centre - near[2] - near[6]
+    cross = (near[3] + near[7] - near[1] - near[5]) / 4
+    shift = [
+        np.clip((ahead - behind) / max(2 * bend, 1e-6), -0.5, 0.5)
+        for ahead, behind, bend in ((near[0], near[4], xx), (near[2], near[6], yy))
+    ]
+    sides = np.stack([around(padded, y, x, radius) / centre for radius in (2, 3)])
+    light = np.pad(scale.light, ((BORDER,) * 2, (BORDER,) * 2, (0, 0)), mode="edge")
+    behind = np.sort(around(light, y, x, 3), axis=0)
+    deviation = np.sqrt(np.diag(response.covariance))
+    missing = max(((behind[1] - scale.light[y, x]) / deviation).max(), 0)
+    adds = max(((scale.light[y, x] - behind[6]) / deviation).max(), 0)
+    looks = np.array(
+        [
+            1 - 4 * (xx * yy - cross**2) / max((xx + yy) ** 2, 1e-12),
+            np.minimum(sides[:, :4], sides[:, 4:]).max(),
+            sides[1].mean(),
+            np.sort(sides[1])[-2],
+            saddle_of(scale.snr, y, x, others),
+            missing / (adds + missing + 1),
+        ]
+    )
+    weights = response.weights[scale.best[y, x]].astype(np.float64)
+    if scale.light[y, x].max() >= 0.8:
+        weights = np.maximum(weights, 0)
+    return Peak(
+        k,
+        (np.array([x, y]) + shift + 0.5) * cell - 0.5,
+        strength,
+        max(added @ weights, 1e-6) / centre,
+        chroma_of(added, response),
+        likeness_of(looks, strength, k),
+        int(scale.best[y, x]),
+        looks,
+    )
+
+
+def saddle_of(snr: np.ndarray, y: int, x: int, others: list[tuple[int, int]]) -> float:
+    """The least on the way to the higher peak that is joined best, over the peak."""
+    best = 0.0
+    for v, u in others:
+        if snr[v, u] > snr[y, x] and np.hypot(v - y, u - x) < 12:
+            part = np.arange(1, 8) / 8
+            down = np.rint(y + (v - y) * part).astype(int)
+            across = np.rint(x + (u - x) * part).astype(int)
+            best = max(best, snr[down, across].min() / snr[y, x])
+    return best
+
+
+def chroma_of(added: np.ndarray, response: Response) -> np.ndarray:
+    """Two angles off the expected colour."""
+    off = response.across @ added
+    size = np.hypot(*off)
+    return off * np.arctan2(size, added @ response.weights[0]) / max(size, 1e-9)
+
+
+def likeness_of(looks: np.ndarray, snr: float, scale: int) -> float:
+    """Log likelihood ratio of a lamp to clutter."""
+    with_looks, without = coefficients()
+    strength = np.log(min(snr, 60.0))
+    base = np.array([1, scale == 1, scale >= 2, strength, strength**2])
+    seen = np.clip(looks, 0, 1)
+    both = np.concatenate([seen, np.sqrt(seen)])
+    return float(np.concatenate([base, both, both * strength]) @ with_looks - base @ without)
+
+
+def promising_of(peaks: list[Peak]) -> list[int]:
+    """Which peaks of a scale are searched for markers."""
+    score = {i: p.likeness + 2 * np.log(p.snr) for i, p in enumerate(peaks) if p.likeness >= -5}
+    return sorted(sorted(score, key=lambda i: -score[i])[:MAX_PROMISING])

@@ -1,0 +1,129 @@
+"""The compiled front end against the same steps in numpy: ``front_reference``."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from front_reference import covariance_of, lights_of, peaks_of, promising_of, scales_of
+
+from chromadock.robust.likeness import coefficients, design
+from chromadock.robust.peaks import find_peaks
+from chromadock.robust.response import respond
+from chromadock.variety import Backdrops, Half, draw, render
+
+DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"
+SIZES = [(640, 480), (320, 240), (1280, 720), (643, 481), (64, 64), (97, 65)]
+
+
+def drawn(index: int) -> np.ndarray:
+    return render(draw(index, Half.DEVELOP.seed(1), Backdrops()))[0]
+
+
+def noise(width: int, height: int) -> np.ndarray:
+    """Bluish noise with two bright spots, of which one clips."""
+    rng = np.random.default_rng(width)
+    frame = rng.normal((150, 110, 40), 9, (height, width, 3))
+    spots = np.zeros((height, width), np.float32)
+    cv2.circle(spots, (width // 3, height // 2), 6, 300.0, -1)
+    cv2.circle(spots, (2 * width // 3, height // 3), 2, 120.0, -1)
+    frame[..., 2] += cv2.GaussianBlur(spots, (0, 0), 2)
+    return np.clip(frame, 0, 255).astype(np.uint8)
+
+
+def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
+    response = respond(frame, hue, 0.85 * frame.shape[1])
+    layout = response.layout
+    lights = lights_of(frame, layout)
+    assert response.covariance == pytest.approx(covariance_of(lights[0]), rel=1e-4)
+    scales = scales_of(frame, response)
+    for k, expected in enumerate(scales):
+        inside = layout.inside(k)
+        light = np.moveaxis(response.light[:, inside[0], inside[1]], 0, 2)
+        added = np.moveaxis(response.added[:, inside[0], inside[1]], 0, 2)
+        assert np.abs(light - expected.light).max() < 1e-6
+        assert np.abs(added - expected.added).max() < 1e-6
+        snr = response.snr[inside]
+        assert np.abs(snr - expected.snr).max() < 1e-3 * max(1.0, np.abs(expected.snr).max())
+        assert np.mean(response.best[inside] != expected.best) < 1e-3
+    found = find_peaks(response)
+    for cell, expected in zip(layout.cells, peaks_of(scales, response), strict=True):
+        peaks = found[cell]
+        assert len(peaks.snr) == len(expected)
+        if not expected:
+            continue
+        # Peaks as strong as one another may come in another order.
+        places = np.array([p.xy for p in expected])
+        apart = np.linalg.norm(peaks.xy[:, None] - places, axis=2)
+        order = apart.argmin(axis=1)
+        assert apart.min(axis=1).max() < 0.01
+        assert len(set(order.tolist())) == len(order)
+        assert np.abs(order - np.arange(len(order))).max() <= 1
+        same = [expected[i] for i in order]
+        assert peaks.snr == pytest.approx(np.array([p.snr for p in same]), rel=1e-3)
+        assert peaks.noise == pytest.approx(np.array([p.noise for p in same]), rel=1e-3)
+        assert np.abs(peaks.chroma - [p.chroma for p in same]).max() < 1e-3
+        assert peaks.best.tolist() == [p.best for p in same]
+        assert np.abs(peaks.looks - [p.looks for p in same]).max() < 2e-3
+        assert np.abs(peaks.likeness - [p.likeness for p in same]).max() < 2e-2
+        chosen = {int(i) for i in np.flatnonzero(np.isin(order, promising_of(expected)))}
+        assert len(chosen ^ set(peaks.promising.tolist())) <= 2
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+def test_noise_and_lamps_of_any_size_give_what_the_reference_gives(size: tuple[int, int]) -> None:
+    held_against_the_reference(noise(*size), 40)
+
+
+@pytest.mark.parametrize("index", range(6))
+def test_drawn_scenes_give_what_the_reference_gives(index: int) -> None:
+    held_against_the_reference(drawn(index), 200 * index)
+
+
+def test_a_large_frame_gives_what_the_reference_gives() -> None:
+    held_against_the_reference(cv2.resize(drawn(0), (1920, 1080)), 700)
+
+
+@pytest.mark.skipif(not DATA.is_dir(), reason="no photographs: ../shared/data is missing")
+@pytest.mark.parametrize("size", SIZES, ids=str)
+def test_photographs_give_what_the_reference_gives(size: tuple[int, int]) -> None:
+    path = sorted(DATA.glob("*/*.jpg"))[7 * SIZES.index(size)]
+    held_against_the_reference(cv2.resize(cv2.imread(str(path)), size), 900)
+
+
+def test_the_design_of_the_regressions_is_what_the_likeness_is_made_of() -> None:
+    with_looks, without = coefficients()
+    found = find_peaks(respond(drawn(1), 0, 512.0))
+    for scale, peaks in enumerate(found.values()):
+        base, seen = design(peaks.looks, peaks.snr, np.full(len(peaks.snr), scale))
+        odds = np.concatenate([base, seen], axis=1) @ with_looks - base @ without
+        assert odds == pytest.approx(peaks.likeness)
+
+
+def test_frames_may_be_worked_on_at_once() -> None:
+    frames = [noise(640 + 8 * k, 480) for k in range(8)]
+
+    def strengths(frame: np.ndarray) -> list[float]:
+        return [snr for peaks in find_peaks(respond(frame, 0, 512.0)).values() for snr in peaks.snr]
+
+    alone = [strengths(frame) for frame in frames]
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(strengths, frames * 4)) == alone * 4
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        np.zeros((63, 640, 3), np.uint8),
+        np.zeros((480, 640), np.uint8),
+        np.zeros((480, 640, 4), np.uint8),
+        np.zeros((480, 640, 3), np.float32),
+    ],
+    ids=lambda frame: f"{frame.shape} {frame.dtype}",
+)
+def test_what_is_no_frame_is_refused(frame: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="a frame"):
+        respond(frame, 0, 512.0)

@@ -93,7 +93,6 @@ static void measure_fluctuation(const front_frame_t *frame)
                                (i % 4 == 0 ? QUANTUM : 0.0);
 }
 
-/* Linear light of all scales. */
 bool light_make(const front_frame_t *frame, const uint8_t *bgr,
                 const float *linear)
 {

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from front_reference import covariance_of, lights_of, peaks_of, promising_of, scales_of
 
+from chromadock.colour.hsv import rgb_from_hsv
+from chromadock.method import HUE_RANGE
 from chromadock.robust.likeness import coefficients, design
 from chromadock.robust.peaks import find_peaks
-from chromadock.robust.response import respond
+from chromadock.robust.response import HUES, linear, respond
 from chromadock.variety import Backdrops, Half, draw, render
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"
@@ -71,6 +73,20 @@ def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
         assert np.abs(peaks.likeness - [p.likeness for p in same]).max() < 2e-2
         chosen = {int(i) for i in np.flatnonzero(np.isin(order, promising_of(expected)))}
         assert len(chosen ^ set(peaks.promising.tolist())) <= 2
+
+
+@pytest.mark.parametrize("hue", [0, 300, 700, 1100])
+def test_filters_are_matched_to_their_hues_and_the_others_blind_to_the_first(hue: int) -> None:
+    response = respond(noise(640, 480), hue, 512.0)
+    hues = [(hue + HUE_RANGE * k // HUES) % HUE_RANGE for k in range(HUES)]
+    pure = np.array([[rgb_from_hsv(h, 255, 255)[::-1] for h in hues]], np.uint8)
+    signatures = linear(pure)[0].astype(np.float64)
+    whitened = np.linalg.solve(response.covariance, signatures.T).T
+    expected = whitened / np.sqrt((signatures * whitened).sum(axis=1, keepdims=True))
+    assert response.weights == pytest.approx(expected, rel=1e-4, abs=1e-4)
+    all_three = np.concatenate([response.weights[:1], response.across])
+    assert all_three @ response.covariance @ all_three.T == pytest.approx(np.eye(3), abs=1e-5)
+    assert response.across @ signatures[0] == pytest.approx(0, abs=1e-9)
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)

@@ -34,7 +34,7 @@ def versions() -> dict[str, str]:
 
 @lru_cache(maxsize=1)
 def code_digest() -> str:
-    """Digest of the sources and data, the compiled firmware and the libraries behind a row."""
+    """Digest of the sources and data, the compiled C and the libraries behind a row."""
     total = hashlib.sha256()
     for file in _files():
         total.update(file.name.encode() + b"\0" + file.read_bytes())
@@ -50,6 +50,7 @@ def _files() -> Iterator[Path]:
     yield from (package / "evaluate" / f"{name}.py" for name in _MODULES)
     yield from sorted(package.glob("*.py"))
     yield from sorted(package.glob("*.toml"))
+    yield from sorted(package.glob("_native.*.so"))
     yield from sorted(firmware.glob("*.py"))
     yield from sorted(firmware.glob("*.so"))
 

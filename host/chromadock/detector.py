@@ -20,8 +20,7 @@ from chromadock.colour.working_image import smooth, working_image
 from chromadock.detection import Background, Detection, Marker
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
-from chromadock.hue_search import GUESS_DECADES, HueSearch
-from chromadock.look import Found, Look, Method
+from chromadock.look import Look, Method
 from chromadock.paper.method import PaperMethod
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
@@ -85,7 +84,6 @@ class Detector:
         self._tracker = None
         if method in _TRACKED and not independent:
             self._tracker = tracker or Tracker(dock)
-        self._hues = HueSearch()
 
     @property
     def mask(self) -> NDArray[np.bool_]:
@@ -142,21 +140,12 @@ class Detector:
             plan = self._tracker.plan(time_s)
             look = replace(
                 look,
-                hue=(hue + self._hues.offset) % contract.HUE_RANGE,
                 priors=plan.priors,
                 everywhere=plan.everywhere,
-                # At a guessed hue three markers would say too little.
-                incomplete=plan.incomplete and not self._hues.offset,
+                incomplete=plan.incomplete,
             )
             found = self._method.find(look, watch)
-            guessed = self._hues.offset != 0 and not plan.priors
-            if guessed and found.evidence is not None:
-                found = replace(found, evidence=found.evidence - GUESS_DECADES)
             track = self._tracker.update(time_s, plan, found, camera, attitude)
-            self._hues.looked(found.markers is not None, track.pose is not None)
-            if guessed and track.pose is None:
-                # A dock of another colour is one only when several frames agree.
-                found = Found("not_found", found.passed_fraction, found.blobs)
             watch.lap("track")
         return Detection(
             state=found.state,

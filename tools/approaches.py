@@ -19,11 +19,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 from collections.abc import Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 from approaches_runs import Row, run_trial, still_trial
 from approaches_tables import RUN, by_run, in_sum, of_no_dock, of_photographs
@@ -57,7 +59,7 @@ def main() -> int:
     if held:
         print("\n".join(of_photographs(held)))
     if args.json:
-        lines = "".join(json.dumps(row) + "\n" for row in (*rows, *empty, *held))
+        lines = "".join(json.dumps(_plain(row)) + "\n" for row in (*rows, *empty, *held))
         args.json.write_text(lines, encoding="utf-8")
     return int(any(r["posed"] for r in empty) or any(r["locked"] for r in held))
 
@@ -97,6 +99,15 @@ def _told(jobs: Sequence[Future[list[Row]]]) -> list[Row]:
         rows += job.result()
         print("\n".join(by_run(job.result())), flush=True)
     return rows
+
+
+def _plain(value: Any) -> Any:
+    """The same with null for numbers that JSON does not have."""
+    if isinstance(value, dict):
+        return {k: _plain(v) for k, v in value.items()}
+    if isinstance(value, list):
+        return [_plain(v) for v in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _arguments() -> argparse.Namespace:

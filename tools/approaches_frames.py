@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from limit import standing_out
 from recall_trials import NEAR_PX, NEAR_SHARE, PLACE_SHARE
 
 from chromadock import Detection
@@ -39,6 +40,9 @@ class Seen:
         The single frame's state, evidence in decades, and how far its pose is off.
     markers
         Where its markers are: ``right``, ``elsewhere``, or ``none``.
+    standing_out
+        Whether all markers stand out of the noise where they truly are; told only of frames that
+        show them all and in which nothing was seen or tracked.
     """
 
     time_s: float
@@ -51,6 +55,7 @@ class Seen:
     evidence: float | None
     single_error: float | None
     markers: str
+    standing_out: bool | None = None
 
     @property
     def tracked(self) -> bool:
@@ -72,10 +77,15 @@ def seen(moment: Moment, detection: Detection, width_m: float) -> Seen:
     """A frame and what the detector made of it; of no dock every pose is infinitely far off."""
     truth, track, pose = moment.truth, detection.track, detection.pose
     tracked = [] if track is None else [p for p in (track.pose, track.alternative) if p]
+    shown = bool(len(truth.in_view)) and bool(truth.in_view.all())
+    stands = None
+    if shown and not detection.markers and (track is None or track.state != "tracking"):
+        hue = detection.marker.hue_deg
+        stands = standing_out(moment.frame_bgr, truth.camera, truth.pixels, hue)
     return Seen(
         time_s=moment.time_s,
         distance_m=float(truth.t[2]) * ORIGINAL_WIDTH_M / width_m,
-        shown=bool(len(truth.in_view)) and bool(truth.in_view.all()),
+        shown=shown,
         state="never_seen" if track is None else track.state,
         error=_error(tracked[0].t, truth) if tracked else None,
         covered=any(covers(p, truth) for p in tracked) if tracked and truth.dock else None,
@@ -83,6 +93,7 @@ def seen(moment: Moment, detection: Detection, width_m: float) -> Seen:
         evidence=detection.evidence,
         single_error=_error(pose.t, truth) if pose else None,
         markers=_markers(detection, truth),
+        standing_out=stands,
     )
 
 

@@ -72,8 +72,9 @@ def run_row(scene: Scene, attitude: bool, frames: list[Seen]) -> Row:
     """A run's factors and figures; shares are of counts, so that runs can be added up.
 
     ``near``: frames that show all markers nearer than NEAR_M; of them those ``near_tracked``, and
-    the others by what the single frame had: ``unseen`` nothing, ``elsewhere`` other markers than
-    the dock's, ``unlocked`` the right ones before the first lock, ``lost`` after it.
+    the others by what the single frame had: ``faint`` nothing, for some marker does not stand out
+    of the noise, ``unseen`` nothing though all do, ``elsewhere`` other markers than the dock's,
+    ``unlocked`` the right ones before the first lock, ``lost`` after it.
     """
     near = [f for f in frames if f.shown and f.distance_m < NEAR_M]
     tracked = [f for f in frames if f.tracked]
@@ -91,7 +92,8 @@ def run_row(scene: Scene, attitude: bool, frames: list[Seen]) -> Row:
         "lock_m": lock.distance_m if lock else None,
         "near": len(near),
         "near_tracked": len(near) - len(missed),
-        "unseen": sum(f.markers == "none" for f in missed),
+        "faint": sum(f.markers == "none" and not f.standing_out for f in missed),
+        "unseen": sum(f.markers == "none" and bool(f.standing_out) for f in missed),
         "elsewhere": sum(f.markers == "elsewhere" for f in missed),
         "unlocked": len(early),
         "lost": len(right) - len(early),

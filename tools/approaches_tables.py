@@ -10,7 +10,7 @@ import numpy as np
 Row = dict[str, Any]
 
 FACTORS = ("dock", "camera", "build", "mapping", "daylight", "exposure", "clear")
-MISSES = ("unseen", "elsewhere", "unlocked", "lost")
+MISSES = ("faint", "unseen", "elsewhere", "unlocked", "lost")
 """What a near frame that is not tracked is for: see ``approaches_runs.run_row``."""
 
 RUN = (
@@ -19,7 +19,7 @@ RUN = (
 )
 SUM = (
     f"{'':22s}runs  locked  lock m  tracked  wrong  worst  covered  found  wrong"
-    "  unseen  elsewhere  unlocked  lost"
+    "  faint  unseen  elsewhere  unlocked  lost"
 )
 
 
@@ -87,7 +87,7 @@ def _groups(name: str, rows: list[Row], group: Callable[[Row], str]) -> Iterator
         yield (
             f"  {value:20s}{len(here):4d}  {locked:6d}  "
             f"{_number(np.median(locks) if locks else None, '.1f', 6)}  {_figures(here)}"
-            f"  {misses[0]:>6s}  {misses[1]:>9s}  {misses[2]:>8s}  {misses[3]:>4s}"
+            + "".join(f"  {m:>{max(len(n), 5)}s}" for n, m in zip(MISSES, misses, strict=True))
         )
 
 

@@ -12,7 +12,7 @@ import pytest
 from approaches_frames import Seen, alike_after_a_turn, seen
 from approaches_pictures import Pictures
 from approaches_runs import run_row, still_trial
-from approaches_tables import by_run, in_sum, of_no_dock
+from approaches_tables import MISSES, by_run, in_sum, of_no_dock
 
 from chromadock import Detection, Track
 from chromadock.detection import Background, Marker
@@ -116,27 +116,28 @@ def test_a_run_tells_why_near_frames_are_not_tracked(first: tuple[Scene, Moment]
     right = pose(moment)
     looks = [
         judged(first, None, state="acquiring", markers_off_px=0.0),
-        judged(first, None, state="never_seen"),
+        replace(judged(first, None, state="never_seen"), standing_out=True),
+        replace(judged(first, None, state="never_seen"), standing_out=False),
         judged(first, right),
         judged(first, pose(moment, 1.2)),
         judged(first, right, state="recently_lost", markers_off_px=0.0),
         judged(first, right, state="recently_lost", markers_off_px=30.0),
     ]
-    distances = [5.5, 4.5, 4.0, 3.5, 3.0, 2.5]
+    distances = [5.5, 4.5, 4.2, 4.0, 3.5, 3.0, 2.5]
     frames = [
         replace(f, time_s=k / 10, distance_m=d, shown=True)
         for k, (f, d) in enumerate(zip(looks, distances, strict=True))
     ]
     row = run_row(scene, True, frames)
-    assert row["lock_s"] == 0.2 and row["lock_m"] == 4.0
-    assert (row["near"], row["near_tracked"]) == (5, 2)
-    assert [row[n] for n in ("unseen", "elsewhere", "unlocked", "lost")] == [1, 1, 0, 1]
+    assert row["lock_s"] == pytest.approx(0.3) and row["lock_m"] == 4.0
+    assert (row["near"], row["near_tracked"]) == (6, 2)
+    assert [row[n] for n in MISSES] == [1, 1, 1, 0, 1]
     assert (row["posed"], row["wrong"], row["tracked"], row["covered"]) == (4, 1, 2, 1)
     assert row["worst"] == pytest.approx(0.2)
     assert run_row(scene, True, [replace(frames[0], distance_m=4.9)])["unlocked"] == 1
-    # Sums are of frames: two runs, of which one is tracked in 2 of 5 and the other in 1 of 1.
-    other = run_row(scene, True, frames[2:3])
-    assert " 0.500 " in next(line for line in in_sum([row, other]) if line.startswith("  att"))
+    # Sums are of frames: two runs, of which one is tracked in 2 of 6 and the other in 1 of 1.
+    other = run_row(scene, True, frames[3:4])
+    assert " 0.429 " in next(line for line in in_sum([row, other]) if line.startswith("  att"))
     assert len(list(by_run([row, other]))) == 2
 
 

@@ -23,6 +23,7 @@ from itertools import product
 from pathlib import Path
 
 import recall_old
+from fixed import fixed_factors
 from recall_tables import Row, by_distance, by_factors
 from recall_trials import photograph_trial, scene_trial
 from step import ROOT
@@ -31,7 +32,7 @@ from chromadock.detector import DEFAULT_METHOD, METHODS
 from chromadock.errors import ChromadockError
 from chromadock.variety import Backdrops, Half
 from chromadock.variety.backdrops import pictures
-from chromadock.variety.factors import check_names, variety
+from chromadock.variety.factors import variety
 
 BACKGROUNDS = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
 FRAMES = 100
@@ -70,7 +71,7 @@ def main() -> int:
 def _run(args: argparse.Namespace) -> tuple[list[Row], list[Row], list[Row]]:
     """Scenes with a dock, those without one, and the photographs."""
     half = Half(args.half)
-    fixed = _fixed(args.fixed)
+    fixed = fixed_factors(args.fixed)
     backdrops = Backdrops.of_folders(BACKGROUNDS, args.photographs).half(half)
     if args.save:
         args.save.mkdir(parents=True, exist_ok=True)
@@ -107,17 +108,6 @@ def _run(args: argparse.Namespace) -> tuple[list[Row], list[Row], list[Row]]:
             [job.result() for job in none],
             [row for job in looks for row in job.result()],
         )
-
-
-def _fixed(pairs: Sequence[str]) -> dict[str, str | float]:
-    fixed: dict[str, str | float] = {}
-    for pair in pairs:
-        name, equals, value = pair.partition("=")
-        if not equals:
-            raise ChromadockError(f"--fixed {pair}: write it as name=value")
-        fixed[name] = value
-    check_names(fixed)
-    return fixed
 
 
 def _arguments() -> argparse.Namespace:

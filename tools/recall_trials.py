@@ -97,13 +97,19 @@ def judged(seen: Detection, truth: Truth) -> Row:
     return row | {"apart_px": float(apart), "place_error": error}
 
 
+def photograph(path: Path) -> np.ndarray:
+    """(H, W, 3) uint8 BGR, at least 640 wide: a camera's own frames are seldom smaller."""
+    picture = np.ascontiguousarray(read(path)[..., ::-1])
+    high, wide = picture.shape[:2]
+    if wide >= 640:
+        return picture
+    return np.asarray(cv2.resize(picture, (640, round(640 * high / wide))), np.uint8)
+
+
 def photograph_trial(method: str, path: Path) -> list[Row]:
     """One photograph without a dock, for each mapping, as it is and as JPEG once more."""
     cv2.setNumThreads(1)
-    picture = np.ascontiguousarray(read(path)[..., ::-1])
-    high, wide = picture.shape[:2]
-    if wide < 640:  # a camera's own frames are seldom smaller
-        picture = np.asarray(cv2.resize(picture, (640, round(640 * high / wide))), np.uint8)
+    picture = photograph(path)
     rows = []
     for quality in REENCODED:
         frame = picture if quality is None else through_jpeg(picture, quality, "4:2:0")

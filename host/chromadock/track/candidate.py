@@ -8,7 +8,8 @@ from chromadock.track.bank import Bank
 from chromadock.track.sight import Sight
 
 LOCK_FRAMES = 3
-"""Frames that found a whole dock, each where the ones before have it."""
+"""Frames that found a whole dock, or four markers of it at least, each where the ones before have
+it."""
 
 LOCK_SPAN_S = 0.1
 """Between the first and the last of them: a glint lasts a few hundredths of a second."""
@@ -37,21 +38,21 @@ GIVEN_UP_S = 0.5
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Candidate:
-    """``bank`` at ``time_s``, the last of ``frames`` that saw it, ``whole`` in so many of them, of
-    so many ``looks`` since ``since_s``; ``evidence`` of the best."""
+    """``bank`` at ``time_s``, the last of ``frames`` that saw it, ``telling`` (see ``Sight``) in so
+    many of them, of so many ``looks`` since ``since_s``; ``evidence`` of the best."""
 
     bank: Bank
     since_s: float
     time_s: float
     frames: int
-    whole: int
+    telling: int
     looks: int
     evidence: float
 
     @classmethod
     def of(cls, sight: Sight, evidence: float, time_s: float) -> Candidate:
         """From the first frame."""
-        return cls(Bank.of(sight), time_s, time_s, 1, int(sight.whole), 1, evidence)
+        return cls(Bank.of(sight), time_s, time_s, 1, int(sight.telling), 1, evidence)
 
     def seen(self, sight: Sight, evidence: float, time_s: float) -> Candidate | None:
         """After another frame with a dock; None where that is elsewhere."""
@@ -64,7 +65,7 @@ class Candidate:
             bank=bank,
             time_s=time_s,
             frames=self.frames + 1,
-            whole=self.whole + sight.whole,
+            telling=self.telling + sight.telling,
             evidence=best,
         )
 
@@ -75,7 +76,7 @@ class Candidate:
     def locked(self, rival: bool) -> bool:
         """Whether it is to be trusted now; a ``rival`` of a tracked dock must be patient."""
         span_s = self.time_s - self.since_s
-        strong = not rival and self.evidence >= LOCK_EVIDENCE and self.whole >= LOCK_FRAMES
+        strong = not rival and self.evidence >= LOCK_EVIDENCE and self.telling >= LOCK_FRAMES
         patient = self.evidence >= PATIENT_EVIDENCE and self.frames >= PATIENT_FRAMES
         long = (strong and span_s >= LOCK_SPAN_S) or (patient and span_s >= PATIENT_SPAN_S)
         return long and self.frames >= LOCK_SHARE * self.looks

@@ -10,6 +10,7 @@ import numpy as np
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
 from chromadock.pose import Estimate, Sighting, projected
+from chromadock.robust.guided import MIN_MARKERS
 
 FLOOR_PX = 0.2
 """Of a marker's error, however bright it is: a colour camera samples red and blue at every other
@@ -58,6 +59,12 @@ class Sight:
             ),
             whole=len(points) == len(dock.points),
         )
+
+    @property
+    def telling(self) -> bool:
+        """Whether it is all of the dock, or so much that it says as much as all of four markers:
+        three places fit anywhere in several ways, more of them do not."""
+        return self.whole or len(self.markers.pixels) > MIN_MARKERS
 
     def worth(self, share: float) -> Sight:
         """The same with ``share`` 0..1 of its information."""

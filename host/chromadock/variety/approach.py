@@ -16,7 +16,7 @@ from chromadock.variety.drawing import draw
 from chromadock.variety.factors import Fixed
 from chromadock.variety.light import water_and_lamp
 from chromadock.variety.rendering import render_at
-from chromadock.variety.scene import Floats, Scene, Truth
+from chromadock.variety.scene import NO_DOCK, Floats, Scene, Thing, Truth
 
 DURATION_S = 14.0
 RATE_HZ = 10.0
@@ -83,28 +83,26 @@ def approach(
     Parameters
     ----------
     fixed
-        As of ``draw``; ``distance`` and angles are the approach's own.
+        As of ``draw``; ``distance`` and angles are the approach's own.  ``dock="none"`` is a way
+        to where no dock is, past all that stands or shines there.
     """
     drawn = draw(index, seed, backdrops, **{**fixed, "distance": str(int(FROM_M))})
-    # What is nearer than the dock could come to hide it.
-    beyond = tuple(
-        thing
-        for thing in drawn.things
-        if (drawn.R @ np.array(thing.place) + drawn.t)[2] > drawn.t[2]
-    )
-    scene = replace(drawn, things=beyond)
+    scene = replace(drawn, things=_in_the_way_of_none(drawn))
     path = draw_path(scene)
     rng = np.random.default_rng([seed, index, 4])
     origin_rad = rng.uniform(-np.pi, np.pi)
     camera = scene.camera_model
     size, focal = (camera.width, camera.height), float(camera.matrix[0, 0])
-    first = backdrop(scene, size) * np.float32(scene.daylight_level)
+    # A turn to the right moves all in view to the left, the bow's rise moves it down.
+    turned = path.angles_rad - path.angles_rad[0]
+    moved = focal / camera.width * turned[:, 2:0:-1] * (-1, 1)
+    room = (_pair(moved.min(axis=0)), _pair(moved.max(axis=0)))
+    first = backdrop(scene, size, room=room) * np.float32(scene.daylight_level)
     water, lamp_rgb = water_and_lamp(scene, first)
     for i, time_s in enumerate(path.time_s.tolist()):
         roll, pitch, yaw = path.angles_rad[i]
-        turned = path.angles_rad[i] - path.angles_rad[0]
-        moved = (-focal * turned[2] / camera.width, focal * turned[1] / camera.width)
-        behind = backdrop(scene, size, moved, 1 + CLOSER * i / len(path.time_s))
+        closer = 1 + CLOSER * i / len(path.time_s)
+        behind = backdrop(scene, size, _pair(moved[i]), closer, room)
         noise = np.random.default_rng([seed, index, 5, i])
         now = replace(
             scene,
@@ -115,6 +113,23 @@ def approach(
         told = np.degrees([roll, pitch, yaw + origin_rad]) / TELEMETRY_DEG
         told_rad = np.radians(np.rint(told) * TELEMETRY_DEG).tolist()
         yield drawn, Moment(time_s, frame, truth, Attitude(*told_rad))
+
+
+def _pair(values: Floats) -> tuple[float, float]:
+    first, second = values.tolist()
+    return first, second
+
+
+def _in_the_way_of_none(scene: Scene) -> tuple[Thing, ...]:
+    """The things without those that are nearer than the dock, which could come to hide it; all of
+    them where there is none."""
+    if scene.dock == NO_DOCK:
+        return scene.things
+    return tuple(
+        thing
+        for thing in scene.things
+        if (scene.R @ np.array(thing.place) + scene.t)[2] > scene.t[2]
+    )
 
 
 def draw_path(scene: Scene) -> Path:
@@ -140,7 +155,6 @@ def draw_path(scene: Scene) -> Path:
     room = 0.85 * half - 0.55 * extent / z[:, None] - swing[2:0:-1]
     drift = np.column_stack([_swing(time_s, DRIFTING_S, rng) for _ in range(2)])
     centre = rng.uniform(-0.6, 0.6, 2) + 0.25 * drift
-    # A turn to the right moves all in view to the left, the bow's rise moves it down.
     turned = rocking[:, 2:0:-1] * (-1, 1)
     ray = middle + np.maximum(room, 0.02 * half) * centre + turned
     return Path(time_s, angles, R, z[:, None] * np.column_stack([ray, np.ones(len(z))]))

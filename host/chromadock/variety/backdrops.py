@@ -17,6 +17,9 @@ from chromadock.variety.halves import Half
 from chromadock.variety.light import to_linear
 from chromadock.variety.scene import Image, Scene
 
+Room = tuple[tuple[float, float], tuple[float, float]]
+"""Right and down, in shares of the width: the least and the greatest."""
+
 
 @dataclass(frozen=True, slots=True)
 class Backdrops:
@@ -65,7 +68,11 @@ def pictures(folder: Path) -> tuple[Path, ...]:
 
 
 def backdrop(
-    scene: Scene, size: tuple[int, int], moved: tuple[float, float] = (0.0, 0.0), scale: float = 1.0
+    scene: Scene,
+    size: tuple[int, int],
+    moved: tuple[float, float] = (0.0, 0.0),
+    scale: float = 1.0,
+    room: Room = ((0.0, 0.0), (0.0, 0.0)),
 ) -> Image:
     """(H, W, 3) float32 linear RGB by full daylight, 0..1.
 
@@ -74,6 +81,8 @@ def backdrop(
     size : width and height, pixels.
     moved : right and down, in shares of the width: how far the camera's turn shifts it.
     scale : by how much it is larger than at first.
+    room : the least and the greatest of all that it is ``moved`` by.  It is enlarged to have so
+        much to spare: what is mirrored at its edge would look like things two by two.
     """
     rng = np.random.default_rng([scene.seed, scene.index, 2])
     place = rng.uniform(0, 1, 2)  # drawn for both kinds, so that neither shifts the other's
@@ -84,9 +93,12 @@ def backdrop(
         if scene.mirrored:
             seen = seen[:, ::-1]
     high, wide = seen.shape[:2]
-    fit = max(size[0] / wide, size[1] / high) * scene.zoom * scale
-    spare = np.array([wide * fit - size[0], high * fit - size[1]])
-    left, top = place * spare - np.multiply(moved, size[0])
+    low, high_end = (size[0] * np.array(end) for end in room)
+    across = np.array(size) + high_end - low
+    fit = max(across[0] / wide, across[1] / high) * scene.zoom * scale
+    left, top = (
+        high_end + place * (np.multiply((wide, high), fit) - across) - np.multiply(moved, size[0])
+    )
     turn = np.array([[fit, 0, fit / 2 - 0.5 - left], [0, fit, fit / 2 - 0.5 - top]])
     fitted = cv2.warpAffine(
         seen,

@@ -12,19 +12,19 @@ from robust_composites import CAMERA, DOCK, composites, read
 from chromadock.colour.background import background_colour
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.working_image import smooth, working_image
-from chromadock.hue_search import OFFSET_STEP
 from chromadock.look import Found, Look
 from chromadock.method import HUE_RANGE
 from chromadock.robust.chroma import SPREAD
 from chromadock.robust.layout import FINE_CELL
 from chromadock.robust.method import RobustMethod
-from chromadock.robust.response import respond
+from chromadock.robust.response import HUES, respond
 from chromadock.robust.shape import focal_px
 from chromadock.stopwatch import Stopwatch
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"
 FRAMES_A_DISTANCE = 34  # each of the 17 backgrounds twice
 NEAR_PX = 3.0
+OFFSET_STEP = HUE_RANGE // HUES
 SEED = 3
 # What 34 frames can be held to: three misses beyond the targets at 204.
 LEAST_RECALL = {1.0: 0.9, 2.0: 0.9, 4.0: 0.8, 5.0: 0.45}

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
+from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
 from chromadock.track.attitude import R_BODY_CAMERA_FORWARD
 from chromadock.variety import Backdrops, Moment, approach, draw
 from chromadock.variety.approach import DURATION_S, RATE_HZ, draw_path
+from chromadock.variety.backdrops import backdrop
 
 FIXED = {"camera": "small", "dock": "rectangle", "backdrop": "procedural"}
 
@@ -65,3 +69,31 @@ def test_the_same_seed_makes_the_same_approach(moments: list[Moment]) -> None:
     for one, other in zip(again, moments, strict=False):
         assert np.array_equal(one.frame_bgr, other.frame_bgr)
         assert np.array_equal(one.truth.t, other.truth.t)
+
+
+def test_an_approach_to_no_dock_shows_lamps_and_knows_no_pose() -> None:
+    fixed = {**FIXED, "dock": "none", "other_dock": "some", "daylight": "night"}
+    scene, moment = next(approach(2, 1, Backdrops(), **fixed))
+    assert moment.truth.dock is None and np.isnan(moment.truth.t).all()
+    assert not len(moment.truth.in_view)
+    assert sum(thing.kind == "lamp" for thing in scene.things) >= 3
+    light = moment.frame_bgr.max(axis=2)
+    assert light.max() > 3 * np.median(light)
+
+
+def test_the_backdrop_is_never_mirrored_at_the_frames_edge(tmp_path: Path) -> None:
+    """Of a photograph whose red grows to the right and green downwards, so does each frame's."""
+    ramp = np.zeros((240, 320, 3), np.uint8)
+    ramp[..., 2] = np.linspace(40, 215, 320)
+    ramp[..., 1] = np.linspace(40, 215, 240)[:, None]
+    file = tmp_path / "ramp.png"
+    cv2.imwrite(str(file), ramp)
+    scene = replace(draw(1, 1, Backdrops((file,)), **FIXED), photograph=file, mirrored=False)
+    moves = [(-0.2, 0.1), (0.1, -0.15)]
+    room = (tuple(np.min(moves, axis=0)), tuple(np.max(moves, axis=0)))
+    for moved in moves:
+        seen = backdrop(scene, (320, 240), moved, 1.15, room)
+        assert (np.diff(seen[..., 0], axis=1)[:, 2:-2] > -1e-6).all()
+        assert (np.diff(seen[..., 1], axis=0)[2:-2] > -1e-6).all()
+    # Without the room it would be.
+    assert (np.diff(backdrop(scene, (320, 240), moves[0])[..., 0], axis=1) < 0).any()

@@ -186,10 +186,10 @@ def saddle_of(snr: np.ndarray, y: int, x: int, others: list[tuple[int, int]]) ->
 
 
 def chroma_of(added: np.ndarray, response: Response) -> np.ndarray:
-    """Two angles off the expected colour."""
-    off = response.across @ added
+    """Two angles off white."""
+    along, *off = response.axes @ added
     size = np.hypot(*off)
-    return off * np.arctan2(size, added @ response.weights[0]) / max(size, 1e-9)
+    return np.array(off) * np.arctan2(size, along) / max(size, 1e-9)
 
 
 def likeness_of(looks: np.ndarray, snr: float, scale: int) -> float:

@@ -93,10 +93,13 @@ def log_looks(
 ) -> float:
     """All that has nothing to do with where a set's members are."""
     others = [i for i in range(len(z)) if i not in members]
+    # The looks of the clutter in this frame, and of eight peaks of clutter of all kinds.
+    usual = [*np.exp(peaks.likeness[others]), *[1.0] * int(clutter.LOOKS_SUPPOSED)]
     return (
         log_alike(peaks.snr[list(members)], along)
         + float(peaks.likeness[list(members)].sum())
-        + sum(rarity(z, peaks.snr, area, m, others) for m in members)
+        - len(members) * math.log(np.mean(usual))
+        + sum(rarity(z, peaks, area, m, others) for m in members)
         + log_common(z, peaks, area, members, others)
     )
 
@@ -114,8 +117,9 @@ def near(z: np.ndarray, area: float, a: int, b: int) -> bool:
     return bool(abs(z[a] - z[b]) < clutter.NEIGHBOURHOOD * math.sqrt(area))
 
 
-def rarity(z: np.ndarray, snr: np.ndarray, area: float, m: int, others: list[int]) -> float:
+def rarity(z: np.ndarray, peaks: Peaks, area: float, m: int, others: list[int]) -> float:
     """Minus log density of clutter at one peak, if ``others`` are clutter."""
+    snr = peaks.snr
     least = snr[-1] if len(snr) == MAX_PEAKS else MIN_SNR
     height = [max(math.log(s / least), 0.0) for s in snr]
     a = clutter.SUPPOSED + len(others)
@@ -127,7 +131,7 @@ def rarity(z: np.ndarray, snr: np.ndarray, area: float, m: int, others: list[int
         strongest = max((height[i] for i in others), default=0.0)
         fall = ((b + strongest) / (b + height[m])) ** a
         expected = min(max(fall, clutter.MOST_FALL), 1.0)
-    disc = math.pi * clutter.NEIGHBOURHOOD**2 * area
+    disc = math.pi * clutter.NEIGHBOURHOOD**2 * area * float(peaks.inside[m])
     return -math.log(a / (b + height[m]) * (nearby + 1) / (disc + area / expected))
 
 

@@ -104,7 +104,9 @@ typedef struct {
     double *covariance; /* 3 x 3: of the fluctuation of finest cells */
     float *weights;     /* FRONT_HUES x 3: the matched filters, such that finest
                          * cells fluctuate by about 1; first the expected hue's */
-    double *across; /* 2 x 3: filters that are blind to the expected colour */
+    double *axes; /* 3 x 3: the matched filter of white, and two filters that
+                   * are blind to white, such that all three fluctuate by 1,
+                   * each for itself */
 } front_frame_t;
 
 /* Peaks, those of each scale from FRONT_MAX_PEAKS times the scale on, the
@@ -114,7 +116,7 @@ typedef struct {
     double *xy;         /* x and y: pixels of the frame */
     double *snr;        /* signal to noise of the brightest 2 x 2 cells */
     double *noise;      /* standard deviation of the filtered light of a cell */
-    double *chroma;     /* two angles off the expected colour, radians */
+    double *chroma;     /* two angles off white, radians */
     double *looks;      /* FRONT_LOOKS for each peak */
     double *likeness;   /* log likelihood ratio of a lamp to clutter */
     uint8_t *best;      /* the filter that answers most */
@@ -140,8 +142,7 @@ int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
 void front_find(const front_frame_t *frame, const double *with_looks,
                 const double *without, front_peaks_t *peaks);
 
-/* Two angles each, in radians, by which n lights are off the expected colour,
- * where the frame's noise is the same in all colours.  added: 3 numbers for
+/* Two angles each, in radians, by which n lights are off white, where the frame's noise is the same in all colours.  added: 3 numbers for
  * each, blue first. */
 void front_chroma(const front_frame_t *frame, const double *added, int n,
                   double *chroma);

@@ -171,5 +171,12 @@ void filters_make(const front_frame_t *frame, const double *signatures)
     for (int hue = 0; hue < FRONT_HUES; hue++)
         match(frame->covariance, signatures + 3 * hue,
               frame->weights + 3 * hue);
-    look_across(frame->covariance, signatures, frame->across);
+    /* About white, no lamp's chroma comes near the pole opposite, where two
+     * like colours would have unlike angles. */
+    const double white[3] = {1, 1, 1};
+    float along[3];
+    match(frame->covariance, white, along);
+    for (int c = 0; c < 3; c++)
+        frame->axes[c] = (double)along[c];
+    look_across(frame->covariance, white, frame->axes + 3);
 }

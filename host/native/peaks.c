@@ -249,9 +249,9 @@ void front_chroma(const front_frame_t *frame, const double *added, int n,
     for (int i = 0; i < n; i++, added += 3, chroma += 2) {
         double off[2] = {0}, along = 0;
         for (int c = 0; c < 3; c++) {
-            off[0] += frame->across[c] * added[c];
-            off[1] += frame->across[3 + c] * added[c];
-            along += (double)frame->weights[c] * added[c];
+            along += frame->axes[c] * added[c];
+            off[0] += frame->axes[3 + c] * added[c];
+            off[1] += frame->axes[6 + c] * added[c];
         }
         const double size = sqrt(off[0] * off[0] + off[1] * off[1]);
         const double scale = atan2(size, along) / fmax(size, 1e-9);

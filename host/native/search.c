@@ -13,10 +13,11 @@ static const double PI = 3.14159265358979323846;
 /* A peak, and what depends on it alone or on it and all others. */
 typedef struct {
     double x, y;
-    double likeness;
+    double likeness, ratio; /* and its exponential */
     double log_snr, weight; /* of the log strength, one over its variance */
     double log_density;     /* of the log strength, at its mean */
     double height;          /* log of the strength over the least known */
+    double around_area;     /* of its neighbourhood, as far as it is in view */
     double chroma_x, chroma_y, variance;
     double supposed; /* density of its chroma if nothing is known */
     /* Sums of the density of its chroma if its colour is another's, and how
@@ -29,8 +30,8 @@ typedef struct {
 typedef struct {
     const evidence_constants_t *constants;
     int32_t count;
-    double area, near_square, disc_area;
-    double heights; /* sum of all */
+    double area, near_square;
+    double heights, ratios; /* sums of all */
     peak_t peaks[SEARCH_MAX_PEAKS];
 } frame_t;
 
@@ -73,18 +74,19 @@ static void prepare_frame(frame_t *frame, const evidence_constants_t *constants,
     frame->count = peaks->count;
     frame->area = peaks->area;
     frame->near_square = square(constants->clutter_neighbourhood) * peaks->area;
-    frame->disc_area = PI * frame->near_square;
-    frame->heights = 0;
+    frame->heights = frame->ratios = 0;
     for (int32_t i = 0; i < peaks->count; i++) {
         peak_t *peak = &frame->peaks[i];
         double noise = 1 / peaks->snr[i];
         peak->x = peaks->places[2 * i];
         peak->y = peaks->places[2 * i + 1];
         peak->likeness = peaks->likeness[i];
+        peak->ratio = exp(peak->likeness);
         peak->log_snr = log(peaks->snr[i]);
         peak->weight = 1 / (square(constants->strength_spread) + square(noise));
         peak->log_density = 0.5 * log(peak->weight / (2 * PI));
         peak->height = larger(peak->log_snr - log(peaks->least_snr), 0);
+        peak->around_area = PI * frame->near_square * peaks->inside[i];
         peak->chroma_x = peaks->chroma[2 * i];
         peak->chroma_y = peaks->chroma[2 * i + 1];
         peak->variance = square(constants->colour_spread) +
@@ -96,6 +98,7 @@ static void prepare_frame(frame_t *frame, const evidence_constants_t *constants,
         peak->around = 1;
         peak->stronger = 0;
         frame->heights += peak->height;
+        frame->ratios += peak->ratio;
         for (int32_t j = 0; j < i; j++) {
             peak_t *other = &frame->peaks[j];
             double same = same_colour(peak, other);
@@ -159,11 +162,12 @@ static double log_alike(const evidence_constants_t *constants,
  * the local count, together with one more peak in as much area as holds one
  * stronger peak in all the frame: the mean of a gamma distribution after that
  * count.  What outshines all others is the rarer for it, to a limit. */
-static double rarity(const frame_t *frame, double height, int32_t stronger,
+static double rarity(const frame_t *frame, const peak_t *peak, int32_t stronger,
                      int32_t nearby, int32_t count, double total,
                      double strongest)
 {
     const evidence_constants_t *constants = frame->constants;
+    double height = peak->height;
     double a = constants->clutter_supposed + (count > 0 ? count : 0);
     double b =
         constants->clutter_supposed / constants->clutter_exponent + total;
@@ -172,7 +176,7 @@ static double rarity(const frame_t *frame, double height, int32_t stronger,
         double fall = pow((b + strongest) / (b + height), a);
         expected = larger(fall < 1 ? fall : 1, constants->clutter_most_fall);
     }
-    double density = (nearby + 1) / (frame->disc_area + frame->area / expected);
+    double density = (nearby + 1) / (peak->around_area + frame->area / expected);
     return -log(a / (b + height) * density);
 }
 
@@ -220,8 +224,8 @@ static double set_rarity(const frame_t *frame, int32_t size,
      * is stronger than. */
     double strongest = first < frame->count ? frame->peaks[first].height : 0;
     for (int32_t i = 0; i < size; i++)
-        sum += rarity(frame, frame->peaks[members[i]].height, stronger[i],
-                      nearby[i], frame->count - size, total, strongest);
+        sum += rarity(frame, &frame->peaks[members[i]], stronger[i], nearby[i],
+                       frame->count - size, total, strongest);
     return sum;
 }
 
@@ -260,17 +264,29 @@ static double set_colour(const frame_t *frame, int32_t size,
     return log(sum / size);
 }
 
+/* Log of the mean likelihood ratio of the clutter's looks, where `count` peaks'
+ * add up to `ratios`.  Over clutter of all kinds that mean is 1; where the
+ * frame's own looks like lamps, a lamp's looks say so much less. */
+static double log_mean_ratio(const frame_t *frame, int32_t count, double ratios)
+{
+    double supposed = frame->constants->likeness_supposed;
+    return log((supposed + larger(ratios, 0)) /
+               (supposed + (count > 0 ? count : 0)));
+}
+
 static double set_evidence(const frame_t *frame, int32_t size,
                            const int32_t *members, const double *along)
 {
     strengths_t strengths = {0};
-    double likeness = 0;
+    double likeness = 0, ratios = frame->ratios;
     for (int32_t i = 0; i < size; i++) {
         const peak_t *peak = &frame->peaks[members[i]];
+        ratios -= peak->ratio;
         add_strength(&strengths, peak->log_snr, peak->weight, peak->log_density,
                      along[i]);
         likeness += peak->likeness;
     }
+    likeness -= size * log_mean_ratio(frame, frame->count - size, ratios);
     return log_alike(frame->constants, &strengths) + likeness +
            set_rarity(frame, size, members) + set_colour(frame, size, members);
 }
@@ -338,8 +354,8 @@ static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
     for (int32_t i = 0; i < size; i++)
         least -= frame->peaks[i].height;
     return larger(
-        rarity(frame, peak->height, stronger, nearby, count, most, strongest),
-        rarity(frame, peak->height, stronger, nearby, count, larger(least, 0),
+        rarity(frame, peak, stronger, nearby, count, most, strongest),
+        rarity(frame, peak, stronger, nearby, count, larger(least, 0),
                strongest));
 }
 
@@ -367,8 +383,16 @@ static void prepare_bounds(search_t *search)
     const frame_t *frame = &search->frame;
     const evidence_constants_t *constants = frame->constants;
     int32_t markers = search->dock->markers;
+    /* The clutter looks least like lamps without those that do most. */
+    double sorted[SEARCH_MAX_PEAKS], ratios = frame->ratios;
+    for (int32_t i = 0; i < frame->count; i++)
+        sorted[i] = frame->peaks[i].ratio;
+    qsort(sorted, (size_t)frame->count, sizeof(double), descending);
+    for (int32_t i = 0; i < markers; i++)
+        ratios -= sorted[i];
+    double usual = log_mean_ratio(frame, frame->count - markers, ratios);
     for (int32_t i = 0; i < search->count; i++) {
-        search->rarity[i] = peak_at(search, i)->likeness +
+        search->rarity[i] = peak_at(search, i)->likeness - usual +
                             most_rarity(frame, search->promising[i], markers);
         search->rarest[i + 1] = search->rarity[i];
         search->nearest_colour[i] = 0;

@@ -39,6 +39,9 @@ typedef struct {
     double clutter_exponent, clutter_supposed;
     /* The least factor by which a peak is rarer for outshining all clutter. */
     double clutter_most_fall;
+    /* What is supposed of the mean likelihood ratio that clutter's looks give,
+     * before any peak is seen: 1, worth so many peaks. */
+    double likeness_supposed;
     /* Radius of a peak's neighbourhood, as a share of the frame's side. */
     double clutter_neighbourhood;
 } evidence_constants_t;
@@ -51,6 +54,8 @@ typedef struct {
     const double *chroma; /* count x 2: radians */
     const double
         *likeness;    /* count: log ratio of a lamp's looks to clutter's */
+    const double *inside; /* count: share of each peak's neighbourhood that lies
+                           * inside the frame */
     double least_snr; /* from which on all of the frame's peaks are here */
     double area;      /* of the frame, square pixels */
 } evidence_peaks_t;
@@ -60,7 +65,7 @@ typedef struct {
  * members: sets x size indices of peaks, those of a set all different.
  * along: size places along the dock, -1..1, of the markers at the members.
  * evidence: receives one value a set: log density of the strengths, sum of the
- * members' likeness, log likelihood ratio of their colours, and minus the log
+ * members' likeness, each over the mean of the clutter in this frame, log likelihood ratio of their colours, and minus the log
  * density of as many peaks of clutter, in square pixels to the power of size.
  * Returns 0, or -1 if there are too many peaks. */
 int32_t evidence_of_sets(const evidence_constants_t *constants,

@@ -105,7 +105,8 @@ def test_json_is_one_object_a_frame_and_nothing_else_on_standard_output(folder):
     assert [r["time_s"] for r in records] == [0, 0.1, 0.2]
     assert set(records[0]) == {
         "file", "frame", "time_s", "state", "found", "background", "marker", "observed",
-        "passed_fraction", "blobs", "markers", "pose", "evidence", "track", "timing_ms",
+        "passed_fraction", "blobs", "markers", "pose", "evidence", "clipped",
+        "misfit", "track", "timing_ms",
     }  # fmt: skip
     assert records[0]["track"] is None
     assert records[0]["background"]["rgb"] == pytest.approx(WATER[::-1], abs=4)

@@ -102,7 +102,7 @@ def test_markers_that_make_no_dock_are_refused_in_one_line(load, markers, says):
         ),
         ("colour = 'red'\n" + dock_text(THREE.items()), "colour is 'red': give \"#RRGGBB\""),
         ("colour = 255\n" + dock_text(THREE.items()), 'colour is 255: give "#RRGGBB"'),
-        ("color = 'white'\n" + dock_text(THREE.items()), "color: only colour and [[marker]]"),
+        ("color = 'white'\n" + dock_text(THREE.items()), "color: only colour, largest_range_m and"),
         ("[[marker]]\nposition = [0, 0, 0]", "marker 1: name is missing"),
         ("[[marker]]\nname = 'a'", "marker 1: position is missing"),
         ("[[marker]]\nname = 7\nposition = [0, 0, 0]", "marker 1: name is 7"),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chromadock.pose import Estimate
 
-FALSE_ALARM_RATE = 1e-4
+FALSE_ALARM_RATE = 10**-4.5
 """Bound on the share of frames of Poisson clutter in which any set of peaks is taken for the
 dock.  It is Markov's, and so loose by far; but real water is not quite Poisson.  What comes of
 both on photographs is in docs/robust.md."""

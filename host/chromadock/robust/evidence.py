@@ -46,6 +46,7 @@ CONSTANTS = ffi.new(
         "clutter_exponent": clutter.EXPONENT,
         "clutter_supposed": clutter.SUPPOSED,
         "clutter_most_fall": clutter.MOST_FALL,
+        "likeness_supposed": clutter.LOOKS_SUPPOSED,
         "clutter_neighbourhood": clutter.NEIGHBOURHOOD,
     },
 )
@@ -59,7 +60,8 @@ class NativePeaks:
         # Where there were more peaks than are kept, those from the weakest one on are known.
         least = float(peaks.snr[-1]) if count == MAX_PEAKS else MIN_SNR
         # C's pointers keep nothing alive.
-        self._kept = [doubles(a) for a in (z, peaks.snr, peaks.chroma, peaks.likeness)]
+        arrays = (z, peaks.snr, peaks.chroma, peaks.likeness, peaks.inside)
+        self._kept = [doubles(array) for array in arrays]
         self.pointer: Any = ffi.new("evidence_peaks_t *", (count, *self._kept, least, area))
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.detection import Misfit
-from chromadock.pose import Estimate, Sighting, estimates, same_rotation
+from chromadock.pose import Estimate, Sighting, estimates, projected, same_rotation
 from chromadock.pose import refined as refined_pose
 from chromadock.profile import widened
 from chromadock.robust.acceptance import LEAST_EVIDENCE, Constellation, doubt
-from chromadock.robust.guided import Guess, guided
+from chromadock.robust.guided import HIDDEN, Guess, guided
 from chromadock.robust.peaks import Peaks
 from chromadock.robust.placement import PosePrior, placement
 from chromadock.robust.refine import Tops, refined
@@ -93,7 +93,9 @@ class Measure:
         return best
 
     def _accepted(self, candidate: Candidate) -> Constellation | None:
-        tops = self._refined(candidate.xy, candidate.cell, candidate.noise, candidate.best)
+        peaks, members = candidate.peaks, candidate.members
+        found = candidate.xy
+        tops = self._refined(found, candidate.cell, peaks.noise[members], peaks.best[members])
         if tops is None:
             return None
         xy, sigma = _choices(tops)
@@ -115,8 +117,25 @@ class Measure:
         wide = tuple(widened(sighting, pose) for pose in again)
         if np.linalg.norm(wide[0].t) > self.largest_range_m:
             return None
+        if not self._all_belong(candidate, sighting, wide[0]):
+            return None
         markers = np.arange(len(self.view.points))
         return Constellation(markers, xy[k], evidence, wide, doubt(wide, placed.weights[order]))
+
+    def _all_belong(self, candidate: Candidate, sighting: Sighting, pose: Estimate) -> bool:
+        """Whether each marker is likelier where it was taken to be than hidden, with a peak of
+        clutter near where it should be."""
+        seen = projected(sighting.points_dock, pose.R, pose.t, sighting.camera)
+        if seen is None:
+            return False
+        variance = sighting.sigma_px**2
+        square = ((seen[0] - sighting.pixels) ** 2).sum(axis=1)
+        places = -0.5 * square / variance - np.log(2 * np.pi * variance)
+        hidden = float(np.log(HIDDEN / (1 - HIDDEN)))
+        return all(
+            candidate.looks + place - candidate.looks_without(marker, self.view.along) > hidden
+            for marker, place in enumerate(places.tolist())
+        )
 
     def _note(self, evidence: float, error_px: float) -> None:
         """What stood like a dock by the search's natural log of evidence, but does not fit."""

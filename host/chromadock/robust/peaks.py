@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.robust.clutter import NEIGHBOURHOOD
 from chromadock.robust.likeness import LOOKS, coefficients
 from chromadock.robust.native import ffi, lib, pointer
 from chromadock.robust.response import Response
@@ -31,7 +32,8 @@ class Peaks:
     ``chroma`` (N, 2) float64: radians, see ``Response.chroma``.  ``likeness`` (N,) float64: see
     ``likeness``.  ``best`` (N,) uint8: the filter that answers most.  ``promising``: indices,
     ascending, of those to be searched for markers: likelier lamps than clutter as strong is
-    common.  ``looks`` (N, LOOKS) float64: see ``likeness``.
+    common.  ``inside`` (N,) float64: share of the neighbourhood of each in which clutter is counted
+    that lies inside the frame.  ``looks`` (N, LOOKS) float64: see ``likeness``.
     """
 
     xy: NDArray[np.float64]
@@ -41,18 +43,20 @@ class Peaks:
     likeness: NDArray[np.float64]
     best: NDArray[np.uint8]
     promising: NDArray[np.intp]
+    inside: NDArray[np.float64]
     looks: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, LOOKS)))
 
 
 def find_peaks(response: Response) -> dict[int, Peaks]:
     """Local maxima that a lamp may have made, MAX_PEAKS at most of each scale; by its cells."""
     places = MAX_PEAKS * len(response.layout.cells)
-    xy, chroma, looks = (np.empty((places, n)) for n in (2, 2, LOOKS))
+    xy, chroma, looks = (np.zeros((places, n)) for n in (2, 2, LOOKS))
     snr, noise, likeness = np.empty((3, places))
     best, promising = np.empty((2, places), np.uint8)
     arrays = xy, snr, noise, chroma, looks, likeness, best, promising
     native = ffi.new("front_peaks_t *", ([], *map(pointer, arrays)))
     lib.front_find(response.native, *map(pointer, coefficients()), native)
+    inside = _inside(xy, response)
     found = {}
     for scale, cell in enumerate(response.layout.cells):
         first = MAX_PEAKS * scale
@@ -65,6 +69,16 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
             likeness[these],
             best[these],
             np.flatnonzero(promising[these]),
+            inside[these],
             looks[these],
         )
     return found
+
+
+def _inside(xy: NDArray[np.float64], response: Response) -> NDArray[np.float64]:
+    """(N,) share of the square about each place (N, 2) that lies inside the frame."""
+    rows, columns = response.layout.shapes[0].tolist()
+    size = np.array([columns, rows]) * response.layout.cells[0]
+    radius = NEIGHBOURHOOD * float(np.sqrt(size.prod()))
+    seen = np.minimum(xy + radius, size) - np.maximum(xy - radius, 0)
+    return np.asarray((np.maximum(seen, 0) / (2 * radius)).prod(axis=1))

@@ -35,9 +35,9 @@ class Response:
     """What the matched filters make of a frame.
 
     ``weights`` (HUES, 3) float32, BGR: the filters, that of the expected hue first, such that
-    finest cells fluctuate by about 1; ``across`` (2, 3), BGR: filters blind to the expected
-    colour, that fluctuate as much, each for itself; ``covariance`` (3, 3), BGR: of the
-    fluctuation of cells, in linear light.
+    finest cells fluctuate by about 1; ``axes`` (3, 3), BGR: the matched filter of white, and two
+    filters blind to white, all of which fluctuate as much, each for itself; ``covariance``
+    (3, 3), BGR: of the fluctuation of cells, in linear light.
 
     In images of all scales, see ``layout``: ``light`` (3, H, W) float32: linear BGR, 0..1;
     ``added`` (3, H, W) float32: the same less that of the surround; ``snr`` (H, W) float32: the
@@ -48,7 +48,7 @@ class Response:
     """
 
     weights: NDArray[np.float32]
-    across: NDArray[np.float64]
+    axes: NDArray[np.float64]
     covariance: NDArray[np.float64]
     layout: Layout
     light: NDArray[np.float32]
@@ -66,7 +66,7 @@ class Response:
         return self.added.reshape(3, -1)[:, at].T.astype(np.float64)
 
     def chroma(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(N, 2) radians: how far light (N, 3) is from the markers' colour."""
+        """(N, 2) radians: how far light (N, 3) is from white."""
         added = np.ascontiguousarray(added, np.float64)
         chroma = np.empty((len(added), 2))
         lib.front_chroma(self.native, pointer(added), len(added), pointer(chroma))
@@ -112,15 +112,15 @@ def respond(
     added = np.empty_like(light)
     snr = np.empty(layout.shape, np.float32)
     best = np.empty(layout.shape, np.uint8)
-    weights, across = np.empty((HUES, 3), np.float32), np.empty((2, 3))
+    weights, axes = np.empty((HUES, 3), np.float32), np.empty((3, 3))
     covariance = np.empty((3, 3))
-    arrays = light, added, snr, best, covariance, weights, across
+    arrays = light, added, snr, best, covariance, weights, axes
     native = ffi.new("front_frame_t *", (layout.native[0], *map(pointer, arrays)))
     less = lib.FRONT_UNEXPECTED if preferred else 0.0
     signatures = _signatures(hue)
     if lib.front_respond(native, pointer(finest), pointer(_LINEAR), pointer(signatures), less):
         raise MemoryError("no memory for a frame's response")
-    return Response(weights, across, covariance, layout, light, added, snr, best, native)
+    return Response(weights, axes, covariance, layout, light, added, snr, best, native)
 
 
 def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.robust.acceptance import HOPEFUL
+from chromadock.robust.evidence import evidence_of_sets, placed_along
 from chromadock.robust.incomplete import Incomplete
 from chromadock.robust.peaks import Peaks
 from chromadock.robust.placement import PosePrior
@@ -18,6 +19,7 @@ from chromadock.robust.search import Search
 from chromadock.robust.shape import (
     ATTITUDE_RAD,
     MIN_SPACING_CELLS,
+    Complex,
     ShapeModel,
     focal_px,
     ideal,
@@ -36,15 +38,28 @@ LOG_RANGES = float(np.log(20.0))
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Candidate:
-    """Peaks at one scale, one for each marker: ``xy`` (n, 2) pixels, ``noise`` (n,) and ``best``
-    (n,) as in ``peaks.Peaks``; ``looks``: see ``search.Candidates``."""
+    """``members`` (n,) of the ``peaks`` at one scale, one for each marker; ``looks`` and
+    ``evidence``: see ``search.Candidates``; ``z`` (N,): ideal pixels of all peaks, ``area``: of
+    the frame in square ones."""
 
     cell: int
-    xy: NDArray[np.float64]
-    noise: NDArray[np.float64]
-    best: NDArray[np.uint8]
+    peaks: Peaks
+    members: NDArray[np.intp]
     looks: float
     evidence: float
+    z: Complex
+    area: float
+
+    @property
+    def xy(self) -> NDArray[np.float64]:
+        """(n, 2) pixels."""
+        return self.peaks.xy[self.members]
+
+    def looks_without(self, marker: int, along: NDArray[np.float64]) -> float:
+        """``looks`` of the others than one marker, which are (n,) ``along`` the dock."""
+        others = np.delete(np.arange(len(along)), marker)
+        sets = self.members[None, others]
+        return float(evidence_of_sets(self.z, self.peaks, self.area, sets, along[others])[0])
 
 
 class View:
@@ -54,6 +69,7 @@ class View:
         self.points = points
         self.camera = camera
         self.focal_px = focal_px(camera)
+        self.along = placed_along(points)
         self.model = ShapeModel.learn(points, camera)
         corners = ideal(np.array([(0, 0), (camera.width - 1.0, camera.height - 1.0)]), camera)
         across = corners[1] - corners[0]
@@ -97,9 +113,7 @@ class View:
         found = self._searches[cell].find(z, peaks, HOPEFUL)
         best = zip(found.members, found.looks.tolist(), found.evidence.tolist(), strict=True)
         return [
-            Candidate(
-                cell, peaks.xy[members], peaks.noise[members], peaks.best[members], looks, evidence
-            )
+            Candidate(cell, peaks, members, looks, evidence, z, self.area)
             for members, looks, evidence in islice(best, MAX_TRIALS)
         ]
 

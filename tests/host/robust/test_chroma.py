@@ -20,11 +20,13 @@ def log_common(chroma: np.ndarray, sets: np.ndarray, z: np.ndarray, snr: np.ndar
     count, along = len(chroma), np.zeros(sets.shape[1])
     nothing, order = np.zeros(count), np.arange(count)
     xy = np.column_stack([z.real, z.imag])
-    peaks = Peaks(xy, snr, nothing, chroma, nothing, order.astype(np.uint8), order)
+    peaks = Peaks(
+        xy, snr, nothing, chroma, nothing, order.astype(np.uint8), order, np.ones(len(snr))
+    )
     rest = []
     for members in sets.tolist():
         others = [i for i in range(count) if i not in members]
-        rare = sum(rarity(z, snr, AREA, m, others) for m in members)
+        rare = sum(rarity(z, peaks, AREA, m, others) for m in members)
         rest.append(log_alike(snr[members], along) + rare)
     return evidence_of_sets(z, peaks, AREA, sets, along) - rest
 

@@ -84,9 +84,9 @@ def test_filters_are_matched_to_their_hues_and_the_others_blind_to_the_first(hue
     whitened = np.linalg.solve(response.covariance, signatures.T).T
     expected = whitened / np.sqrt((signatures * whitened).sum(axis=1, keepdims=True))
     assert response.weights == pytest.approx(expected, rel=1e-4, abs=1e-4)
-    all_three = np.concatenate([response.weights[:1], response.across])
-    assert all_three @ response.covariance @ all_three.T == pytest.approx(np.eye(3), abs=1e-5)
-    assert response.across @ signatures[0] == pytest.approx(0, abs=1e-9)
+    covariance = response.axes @ response.covariance @ response.axes.T
+    assert covariance == pytest.approx(np.eye(3), abs=1e-5)
+    assert response.axes[1:] @ np.ones(3) == pytest.approx(0, abs=1e-9)
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)

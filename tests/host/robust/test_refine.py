@@ -42,7 +42,7 @@ def test_lamps_are_located_without_bias_however_much_they_clip(
         places = np.array([(60.0, 80.0), (170.0, 76.0)]) + rng.uniform(-2, 2, (2, 2))
         frame = frame_with(places, radius_px, radiance, rng)
         about = places + rng.uniform(-cell / 3, cell / 3, (2, 2))
-        found = refined(frame, about, cell, seen(frame).weights, np.ones(2) * cell / 4)
+        found = refined(frame, about, cell, seen(frame).weights[:1], np.ones(2) * cell / 4)
         assert found is not None
         off = np.array([tops.xy[0] for tops in found]) - places
         errors.append(off)
@@ -57,7 +57,7 @@ def test_neighbours_do_not_melt_into_one() -> None:
     rng = np.random.default_rng(2)
     places = np.array([(100.0, 70.0), (100.4, 79.3)])
     frame = frame_with(places, 0.5, 0.4, rng)
-    found = refined(frame, places + 0.8, 4, seen(frame).weights, np.ones(2))
+    found = refined(frame, places + 0.8, 4, seen(frame).weights[:1], np.ones(2))
     assert found is not None
     assert np.array([tops.xy[0] for tops in found]) == pytest.approx(places, abs=0.5)
 
@@ -86,7 +86,7 @@ def test_a_large_lamp_with_room_is_located_beside_small_ones_without() -> None:
     both = [frame_with(small, 0.5, 0.4, rng), frame_with(large, 9.0, 12.0, rng)]
     frame = np.maximum(*both)
     places = np.concatenate([small, large])
-    found = refined(frame, places + 1.0, 4, seen(frame).weights, np.ones(3))
+    found = refined(frame, places + 1.0, 4, seen(frame).weights[:1], np.ones(3))
     assert found is not None
     assert np.array([tops.xy[0] for tops in found]) == pytest.approx(places, abs=0.3)
 
@@ -99,7 +99,7 @@ def test_a_lamp_beside_a_glint_is_among_the_places() -> None:
     bright = frame_with(glint, 0.5, 0.45, rng).astype(int)
     frame = np.maximum(dim, bright).astype(np.uint8)
     about = np.array([(103.0, 68.0), (100.5, 87.5)])
-    found = refined(frame, about, 4, seen(frame).weights, np.ones(2))
+    found = refined(frame, about, 4, seen(frame).weights[:1], np.ones(2))
     assert found is not None
     first, second = found
     assert np.linalg.norm(first.xy - places[0], axis=1).min() < 0.7
@@ -113,7 +113,7 @@ def test_a_sharp_lamp_of_one_colour_is_known_less_well_than_a_blunt_one() -> Non
     rng = np.random.default_rng(4)
     places = np.array([(60.0, 80.0), (80.0, 80.0)])
     sharp, blunt = (
-        refined(frame, places, 4, seen(frame).weights, np.full(2, 0.01))
+        refined(frame, places, 4, seen(frame).weights[:1], np.full(2, 0.01))
         for frame in (frame_with(places, radius, 1.0, rng) for radius in (0.2, 3.0))
     )
     assert sharp is not None and blunt is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -65,9 +66,10 @@ def seen(points: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 
 def peaks_of(xy: np.ndarray, snr: np.ndarray, chroma: np.ndarray, likeness: np.ndarray) -> Peaks:
-    """The first MAX_PROMISING of them promising."""
+    """The first MAX_PROMISING of them promising, their neighbourhoods more and less in view."""
     nothing, promising = np.zeros(len(xy), np.uint8), np.arange(min(len(xy), MAX_PROMISING))
-    return Peaks(xy, snr, np.ones(len(xy)), chroma, likeness, nothing, promising)
+    inside = 0.6 + 0.4 * np.sin(np.arange(len(xy))) ** 2
+    return Peaks(xy, snr, np.ones(len(xy)), chroma, likeness, nothing, promising, inside)
 
 
 def look(count: int, z: np.ndarray, peaks: Peaks, least: float) -> Candidates:
@@ -96,7 +98,7 @@ def test_only_promising_peaks_are_markers_but_all_are_clutter() -> None:
     z, peaks, places = frame(RECTANGLE, 8, rng)
     promising = np.array(sorted([*places, 2 if 2 not in places else 3]))
     some = peaks_of(peaks.xy, peaks.snr, peaks.chroma, peaks.likeness)
-    some = Peaks(some.xy, some.snr, some.noise, some.chroma, some.likeness, some.best, promising)
+    some = replace(some, promising=promising)
     found = look(4, z, some, -25.0)
     evidence = dict(zip(map(tuple, found.members.tolist()), found.evidence.tolist(), strict=True))
     expected = sets_of(MODELS[4], SIGMA_PX, AREA, z, some, -25.0)

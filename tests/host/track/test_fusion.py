@@ -8,6 +8,7 @@ from track_truth import CAMERA, DOCK, approach, rotation, sight
 
 from chromadock.mounting import R_BODY_CAMERA_FORWARD as FORWARD
 from chromadock.mounting import Mounting
+from chromadock.robust.shape import ATTITUDE_RAD
 from chromadock.track.attitude import Attitude, expected
 from chromadock.track.bank import Bank
 from chromadock.track.fusion import with_attitude, with_markers, with_turn_rate
@@ -129,7 +130,9 @@ def test_the_errors_of_markers_have_a_floor() -> None:
 def test_a_level_forward_camera_sees_a_level_dock_as_it_is() -> None:
     R, covariance = expected(None, Mounting())
     assert pytest.approx(np.eye(3)) == R
-    assert np.degrees(np.sqrt(np.diag(covariance))) == pytest.approx([10, 20, 10], abs=0.1)
+    pitch, yaw, roll = ATTITUDE_RAD
+    swims = max(pitch, roll)
+    assert np.sqrt(np.diag(covariance)) == pytest.approx([swims, yaw, swims])
 
 
 @pytest.mark.parametrize(
@@ -143,7 +146,7 @@ def test_what_the_vehicle_turns_by_the_dock_turns_by_the_other_way(
     R, covariance = expected(attitude, Mounting())
     assert turn_between(np.eye(3), R) == pytest.approx(sign * 0.2 * np.eye(3)[axis])
     down = R @ [0, 1, 0]
-    assert np.sqrt(down @ covariance @ down) == pytest.approx(np.radians(20))
+    assert np.sqrt(down @ covariance @ down) == pytest.approx(ATTITUDE_RAD[1])
 
 
 def test_a_camera_that_looks_down_expects_the_dock_before_it_turned() -> None:

@@ -17,6 +17,10 @@ both on photographs is in docs/robust.md."""
 
 LEAST_EVIDENCE = float(-np.log(FALSE_ALARM_RATE))
 
+LEAST_FOR_A_TRACK = float(2.5 * np.log(10))
+"""Of markers that a track looks for, where it has the dock or with one of them out: no pose of a
+frame by itself is told with so little, and a lock takes more from several frames."""
+
 HOPEFUL = LEAST_EVIDENCE - float(np.log(1.5))
 """Evidence worth measuring for.  Exact places may add a factor of three, but to wait for that finds
 no more docks, and measuring is the dearest step."""

@@ -16,12 +16,16 @@ from chromadock.camera import CameraModel
 from chromadock.robust.guided import HIDDEN, MIN_MARKERS, Guess
 from chromadock.robust.peaks import Peaks
 from chromadock.robust.search import Search
-from chromadock.robust.shape import ShapeModel, ideal
+from chromadock.robust.shape import ShapeModel, focal_px, ideal
 
 AMBIGUOUS = float(np.log(2))
 """A name for the places must be so much likelier than any other: three markers with the fourth
 above one of them look like three with it below, turned a little.  Where that does not tell,
 nothing is found; the dock or the vehicle sways, and another frame will tell."""
+
+SAME_PLACE = 0.03
+"""Unless both names put the dock at the same place, to so much of its range: then the track
+has time to find out which is right."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -37,6 +41,7 @@ class Incomplete:
 
     def __init__(self, points: NDArray[np.float64], camera: CameraModel, area: float) -> None:
         self._camera, self._area = camera, area
+        self._points, self._focal_px = points - points.mean(axis=0), focal_px(camera)
         count = len(points)
         self._parts: list[_Part] = []
         if count > MIN_MARKERS:
@@ -66,10 +71,20 @@ class Incomplete:
         best = max(guesses, key=lambda guess: guess.evidence, default=None)
         if best is None or best.evidence < least:
             return None
-        rivals = [g for g in guesses if g is not best and _shared(g, best) >= MIN_MARKERS - 1]
-        if any(g.evidence > best.evidence - AMBIGUOUS for g in rivals):
-            return None
+        place = self._centre(best, peaks)
+        for rival in guesses:
+            close = rival.evidence > best.evidence - AMBIGUOUS
+            if rival is not best and close and _shared(rival, best) >= MIN_MARKERS - 1:
+                apart = np.linalg.norm(self._centre(rival, peaks) - place)
+                if apart > SAME_PLACE * self._focal_px:
+                    return None
         return best
+
+    def _centre(self, guess: Guess, peaks: Peaks) -> NDArray[np.float64]:
+        """(2,) pixels of the whole dock's centroid, by an affine view of the markers seen."""
+        design = np.column_stack([self._points, np.ones(len(self._points))])
+        view, *_ = np.linalg.lstsq(design[guess.markers], peaks.xy[guess.members], rcond=None)
+        return np.asarray(view[-1])
 
 
 def _shared(a: Guess, b: Guess) -> int:

@@ -13,7 +13,7 @@ from chromadock.detection import Misfit
 from chromadock.pose import Estimate, Sighting, estimates, projected, same_rotation
 from chromadock.pose import refined as refined_pose
 from chromadock.profile import widened
-from chromadock.robust.acceptance import LEAST_EVIDENCE, Constellation, doubt
+from chromadock.robust.acceptance import LEAST_EVIDENCE, LEAST_FOR_A_TRACK, Constellation, doubt
 from chromadock.robust.guided import HIDDEN, Guess, guided
 from chromadock.robust.peaks import Peaks
 from chromadock.robust.placement import PosePrior, placement
@@ -72,7 +72,7 @@ class Measure:
             for cell, found in peaks.items():
                 error_px = PEAK_ERROR * cell
                 guess = guided(self.view.points, prior, found, error_px, self.view.camera)
-                if guess is None or guess.evidence < LEAST_EVIDENCE:
+                if guess is None or guess.evidence < LEAST_FOR_A_TRACK:
                     continue
                 if best is None or (len(guess.markers), guess.evidence) > (
                     len(best.markers),
@@ -85,7 +85,7 @@ class Measure:
         """The dock with a marker out, if that explains the frame well enough."""
         best: Constellation | None = None
         for cell, found in peaks.items():
-            least = LEAST_EVIDENCE if best is None else best.evidence
+            least = LEAST_FOR_A_TRACK if best is None else best.evidence
             error_px = PEAK_ERROR * cell
             guess = self.view.incomplete.find(cell, found, error_px, least, self.upright)
             if guess is not None:
@@ -161,8 +161,7 @@ class Measure:
         placed = placement(sighting, poses, self.prior)
         sighting = replace(sighting, sigma_px=placed.sigma_px)
         poses = tuple(refined_pose(sighting, pose.R, pose.t) or pose for pose in poses)
-        if not priors:
-            poses = tuple(widened(sighting, pose) for pose in poses)
+        poses = tuple(widened(sighting, pose) for pose in poses)
         return Constellation(guess.markers, xy, guess.evidence, poses)
 
     def _refined(

@@ -142,8 +142,9 @@ int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
 void front_find(const front_frame_t *frame, const double *with_looks,
                 const double *without, front_peaks_t *peaks);
 
-/* Two angles each, in radians, by which n lights are off white, where the frame's noise is the same in all colours.  added: 3 numbers for
- * each, blue first. */
+/* Two angles each, in radians, by which n lights are off white, where the
+ * frame's noise is the same in all colours.  added: 3 numbers for each, blue
+ * first. */
 void front_chroma(const front_frame_t *frame, const double *added, int n,
                   double *chroma);
 

@@ -176,7 +176,8 @@ static double rarity(const frame_t *frame, const peak_t *peak, int32_t stronger,
         double fall = pow((b + strongest) / (b + height), a);
         expected = larger(fall < 1 ? fall : 1, constants->clutter_most_fall);
     }
-    double density = (nearby + 1) / (peak->around_area + frame->area / expected);
+    double density =
+        (nearby + 1) / (peak->around_area + frame->area / expected);
     return -log(a / (b + height) * density);
 }
 
@@ -225,7 +226,7 @@ static double set_rarity(const frame_t *frame, int32_t size,
     double strongest = first < frame->count ? frame->peaks[first].height : 0;
     for (int32_t i = 0; i < size; i++)
         sum += rarity(frame, &frame->peaks[members[i]], stronger[i], nearby[i],
-                       frame->count - size, total, strongest);
+                      frame->count - size, total, strongest);
     return sum;
 }
 
@@ -353,10 +354,9 @@ static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
     double most = frame->heights - peak->height, least = frame->heights;
     for (int32_t i = 0; i < size; i++)
         least -= frame->peaks[i].height;
-    return larger(
-        rarity(frame, peak, stronger, nearby, count, most, strongest),
-        rarity(frame, peak, stronger, nearby, count, larger(least, 0),
-               strongest));
+    return larger(rarity(frame, peak, stronger, nearby, count, most, strongest),
+                  rarity(frame, peak, stronger, nearby, count, larger(least, 0),
+                         strongest));
 }
 
 /* Density of clutter's chroma at a peak at least: if all others in a set of so
@@ -384,7 +384,7 @@ static void prepare_bounds(search_t *search)
     const evidence_constants_t *constants = frame->constants;
     int32_t markers = search->dock->markers;
     /* The clutter looks least like lamps without those that do most. */
-    double sorted[SEARCH_MAX_PEAKS], ratios = frame->ratios;
+    double sorted[SEARCH_MAX_PEAKS] = {0}, ratios = frame->ratios;
     for (int32_t i = 0; i < frame->count; i++)
         sorted[i] = frame->peaks[i].ratio;
     qsort(sorted, (size_t)frame->count, sizeof(double), descending);

@@ -53,11 +53,11 @@ typedef struct {
     const double *snr;    /* count: signal to noise, above 0 */
     const double *chroma; /* count x 2: radians */
     const double
-        *likeness;    /* count: log ratio of a lamp's looks to clutter's */
+        *likeness;        /* count: log ratio of a lamp's looks to clutter's */
     const double *inside; /* count: share of each peak's neighbourhood that lies
                            * inside the frame */
-    double least_snr; /* from which on all of the frame's peaks are here */
-    double area;      /* of the frame, square pixels */
+    double least_snr;     /* from which on all of the frame's peaks are here */
+    double area;          /* of the frame, square pixels */
 } evidence_peaks_t;
 
 /* The evidence of given sets in all but their places.
@@ -65,9 +65,10 @@ typedef struct {
  * members: sets x size indices of peaks, those of a set all different.
  * along: size places along the dock, -1..1, of the markers at the members.
  * evidence: receives one value a set: log density of the strengths, sum of the
- * members' likeness, each over the mean of the clutter in this frame, log likelihood ratio of their colours, and minus the log
- * density of as many peaks of clutter, in square pixels to the power of size.
- * Returns 0, or -1 if there are too many peaks. */
+ * members' likeness, each over the mean of the clutter in this frame, log
+ * likelihood ratio of their colours, and minus the log density of as many peaks
+ * of clutter, in square pixels to the power of size. Returns 0, or -1 if there
+ * are too many peaks. */
 int32_t evidence_of_sets(const evidence_constants_t *constants,
                          const evidence_peaks_t *peaks, int32_t sets,
                          int32_t size, const int32_t *members,

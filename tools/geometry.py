@@ -24,7 +24,7 @@ import numpy as np
 from step import ROOT
 
 sys.path.insert(0, str(ROOT / "tests"))
-from recall import COVERED, NEAR_PX, PHOTOGRAPHS, backgrounds
+from recall_old import COVERED, NEAR_PX, PHOTOGRAPHS, backgrounds
 from robust_composites import ATTITUDE_DEG, CAMERA, compose, pose_in_view, read
 
 from chromadock import Detector, DockGeometry

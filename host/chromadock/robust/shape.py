@@ -12,6 +12,7 @@ Places are complex numbers x + iy in ideal pixels: focal length times tangent, n
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,6 +95,12 @@ class ShapeModel:
     @classmethod
     def learn(cls, points: Real, camera: CameraModel) -> ShapeModel:
         """Simulate views of (n, 3) markers; the same for the same markers and camera."""
+        points = np.ascontiguousarray(points, np.float64)
+        geometry = (camera.matrix.tobytes(), camera.distortion.tobytes())
+        return _learnt(points.tobytes(), camera.width, camera.height, *geometry)
+
+    @classmethod
+    def _of(cls, points: Real, camera: CameraModel) -> ShapeModel:
         order = _order(points)
         z, facet = _views(points[list(order)], camera)
         base, side = z[:, 1] - z[:, 0], z[:, 2] - z[:, 0]
@@ -141,6 +148,13 @@ class ShapeModel:
         log_norm = 0.5 * np.linalg.slogdet(2 * np.pi * covariance)[1]
         facets = self.log_share[span] - 0.5 * square - log_norm
         return np.asarray(np.logaddexp.reduce(facets, axis=1) - 2 * b.shape[1] * np.log(size))
+
+
+@lru_cache(maxsize=32)
+def _learnt(points: bytes, width: int, height: int, matrix: bytes, lens: bytes) -> ShapeModel:
+    """The model of a dock and a camera: a second detector need not learn it again."""
+    camera = CameraModel(width, height, np.frombuffer(matrix).reshape(3, 3), np.frombuffer(lens))
+    return ShapeModel._of(np.frombuffer(points).reshape(-1, 3), camera)
 
 
 def stacked(values: Complex) -> Real:

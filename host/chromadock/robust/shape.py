@@ -38,8 +38,8 @@ of shapes each way."""
 
 _ALONG_AXIS = float(np.sin(np.radians(12.0)))
 
-_VIEWS = 60_000  # half of them are whole, and an eighth of those falls in each of ...
-_SPANS = 8  # ... as many spans of size: covariances to 4%
+_VIEWS = 36_000  # half of them are whole, and an eighth of those falls in each of ...
+_SPANS = 8  # ... as many spans of size: covariances to 8% in the rarest facet
 _ROOM = 1.15  # of windows beyond all views
 _TAIL = 0.001  # of the views may be shorter than a window
 

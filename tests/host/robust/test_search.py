@@ -179,7 +179,7 @@ def test_a_frame_full_of_rings_takes_bounded_time(monkeypatch: pytest.MonkeyPatc
 
 
 def test_of_more_sets_than_are_kept_the_best_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    z, peaks, _ = frame(RECTANGLE, 40, np.random.default_rng(10))
+    z, peaks, _ = frame(RECTANGLE, 20, np.random.default_rng(11))
     every = look(4, z, peaks, -30.0)
     assert 4 < len(every.evidence) < search.MAX_SETS
     monkeypatch.setattr(search, "MAX_SETS", 4)

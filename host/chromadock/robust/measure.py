@@ -160,9 +160,12 @@ class Measure:
             return None
         placed = placement(sighting, poses, self.prior)
         sighting = replace(sighting, sigma_px=placed.sigma_px)
-        poses = tuple(refined_pose(sighting, pose.R, pose.t) or pose for pose in poses)
-        poses = tuple(widened(sighting, pose) for pose in poses)
-        return Constellation(guess.markers, xy, guess.evidence, poses)
+        order = np.argsort(-placed.weights, kind="stable")
+        again = (refined_pose(sighting, poses[k].R, poses[k].t) or poses[k] for k in order)
+        poses = tuple(widened(sighting, pose) for pose in again)
+        # About a track's pose the track says how sure the place is.
+        unsure = 0.0 if priors else doubt(poses, placed.weights[order])
+        return Constellation(guess.markers, xy, guess.evidence, poses, unsure)
 
     def _refined(
         self,

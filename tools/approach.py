@@ -108,7 +108,7 @@ def run(approach: Approach) -> pl.DataFrame:
 def _rows(approach: Approach) -> Iterator[dict[str, Any]]:
     scene = approach.scene()
     simulation = Simulation(scene)
-    detector = Detector(scene.vehicle_camera.model, scene.dock)
+    detector = Detector(scene.vehicle_camera.model, scene.dock, mounting=scene.mounting)
     for step in simulation.steps(approach.times):
         frame = simulation.frame(step)
         detection = detector.process(frame.image_bgr, step.time_s)

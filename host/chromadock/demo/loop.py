@@ -76,7 +76,7 @@ def run(jobs: int) -> Iterator[Moment]:
     for leg in LEGS:
         scene = leg.scene()
         simulation = Simulation(scene)
-        detector = Detector(scene.vehicle_camera.model, scene.dock)
+        detector = Detector(scene.vehicle_camera.model, scene.dock, mounting=scene.mounting)
         steps = list(simulation.steps(np.arange(leg.count) / FRAME_RATE_HZ))
         frames = rendered(simulation, steps, jobs, _as_it_is)
         for step, frame in zip(steps, frames, strict=True):

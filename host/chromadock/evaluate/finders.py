@@ -11,9 +11,12 @@ from chromadock.evaluate.filters import ROBUST, filter_mask
 from chromadock.evaluate.tuned import Tuned
 from chromadock.evaluate.view import View
 from chromadock.look import Found, Look
+from chromadock.marker_colour import ColourKind, MarkerColour
+from chromadock.mounting import Mounting
 from chromadock.paper.method import PaperMethod
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
+from chromadock.track.attitude import expected_if_told
 
 
 class Finders:
@@ -25,10 +28,20 @@ class Finders:
         The dock looked for, and the camera that looks.
     tuned
         What the static filters pass.
+    mounting
+        How the camera sits in the vehicle, where the robust method is told; None: it is not.
     """
 
-    def __init__(self, dock: DockGeometry, camera: CameraModel, tuned: Tuned) -> None:
+    def __init__(
+        self,
+        dock: DockGeometry,
+        camera: CameraModel,
+        tuned: Tuned,
+        mounting: Mounting | None = None,
+    ) -> None:
         self._camera = camera
+        self._colour = None if dock.colour is None else MarkerColour.parse(dock.colour)
+        self._expected = expected_if_told(None, mounting)
         self._tuned = tuned
         self._paper = PaperMethod(dock)
         self._robust = RobustMethod(dock)
@@ -36,12 +49,30 @@ class Finders:
     def find(self, name: str, view: View, mapping: str) -> tuple[Found, NDArray[np.uint8]]:
         """What ``name``, one of ``FILTERS``, makes of a frame by itself, and its mask (H, W).
 
-        ``mapping`` is the run's own: the robust method looks for the hue that the dock shows,
-        where an adaptive filter looks for that of its own mapping.
+        ``mapping`` is the run's own: the robust method looks for the hue that the dock shows, or for
+        the colour that a dock has of its own, where an adaptive filter looks for the hue of its own
+        mapping.
         """
         if name == ROBUST:
-            hue = view.marker_hues[mapping]
-            look = Look(view.frame_bgr, view.background, hue, self._camera)
+            look = self._look(view, mapping)
             return self._robust.find(look, Stopwatch()), self._robust.mask
         mask = filter_mask(name, view, self._tuned)
         return self._paper.find_in_mask(mask, self._camera, Stopwatch()), mask
+
+    def _look(self, view: View, mapping: str) -> Look:
+        """What ``Detector`` gives to the robust method."""
+        hue = view.marker_hues[mapping]
+        kind: ColourKind = "hue"
+        if self._colour is not None:
+            hue = hue if self._colour.hue is None else self._colour.hue
+            kind = self._colour.kind
+        R, covariance = self._expected
+        return Look(
+            view.frame_bgr,
+            view.background,
+            hue,
+            self._camera,
+            R_expected=R,
+            R_covariance=covariance,
+            colour=kind,
+        )

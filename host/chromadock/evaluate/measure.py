@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from chromadock.detection import Pose
 from chromadock.evaluate.target import Target
 from chromadock.look import Found
+from chromadock.robust.acceptance import PLACE_TOLERANCE
 from chromadock.rotation import matrix_from_quaternion
 
 CORRECT_PX = 3.0
@@ -20,7 +21,8 @@ def measured(found: Found, mask: NDArray[np.uint8], target: Target) -> dict[str,
     """A row's columns from ``passed`` to ``attitude_error_deg``.
 
     Shares of pixels passed, in all and outside the true markers' circles; whether a dock was
-    found, correctly, or where there is none: a marker outside its true one's circle.  The
+    found, correctly, or where there is none: a marker outside its true one's circle; whether a pose
+    was told that is wrong: of such a dock, or its place off by more than ``PLACE_TOLERANCE``.  The
     errors are None where the dock was not found correctly: range relative to the true one and
     positive where too far, the angle between measured and true direction, and that between
     measured and true attitude.
@@ -30,12 +32,14 @@ def measured(found: Found, mask: NDArray[np.uint8], target: Target) -> dict[str,
     apart = _distances(found, target)
     correct = apart is not None and float(apart.max()) <= CORRECT_PX
     missed = max(CORRECT_PX, target.radius_px)
+    false_dock = apart is not None and float(apart.max()) > missed
     return {
         "passed": passed / mask.size,
         "passed_outside": (passed - inside) / mask.size,
         "found": apart is not None,
         "correct": correct,
-        "false_dock": apart is not None and float(apart.max()) > missed,
+        "false_dock": false_dock,
+        "wrong_pose": found.pose is not None and (false_dock or _misplaced(found.pose, target)),
         "range_true_m": target.range_m,
         **_errors(found.pose if correct else None, target),
     }
@@ -47,6 +51,11 @@ def _distances(found: Found, target: Target) -> NDArray[np.float64] | None:
         return None
     places = np.array([found.markers[name] for name in target.names])
     return np.asarray(np.linalg.norm(places - target.pixels, axis=1))
+
+
+def _misplaced(pose: Pose, target: Target) -> bool:
+    off_m = float(np.linalg.norm(np.array(pose.t) - target.t))
+    return off_m > PLACE_TOLERANCE * target.range_m
 
 
 def _errors(pose: Pose | None, target: Target) -> dict[str, float | None]:

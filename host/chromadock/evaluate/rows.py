@@ -15,7 +15,7 @@ COLUMNS: Mapping[str, Any] = {
     "time_s": pl.Float64,
     "filter": pl.String,
     **dict.fromkeys(("passed", "passed_outside"), pl.Float64),
-    **dict.fromkeys(("found", "correct", "false_dock"), pl.Boolean),
+    **dict.fromkeys(("found", "correct", "false_dock", "wrong_pose"), pl.Boolean),
     **dict.fromkeys(("range_true_m", "range_error"), pl.Float64),
     **dict.fromkeys(("bearing_error_deg", "attitude_error_deg"), pl.Float64),
     **dict.fromkeys(("dock_hue_deg", "vehicle_hue_deg", "hue_disagreement_deg"), pl.Float64),

@@ -46,7 +46,7 @@ def sweep_plot(sweep: Sweep) -> Figure:
     for (title, rows), (upper, lower) in zip(columns, grid.T, strict=True):
         hues = list(hue_disagreement(rows, [X]))
         points(upper, [x for (x,), _ in hues], [hue for _, hue in hues], PLAIN, 1.0, line=line)
-        highest = max(highest, *(hue.high for _, hue in hues))
+        highest = max([highest, *(hue.high for _, hue in hues)])
         recall_lines(lower, rows, X, line)
         upper.set_title(title, fontsize=9, fontweight="normal")
         upper.grid(axis="y")

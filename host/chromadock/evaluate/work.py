@@ -41,7 +41,8 @@ def measured_chunk(chunk: Chunk, steps: Sequence[Step], tuned: Tuned) -> Measure
     """
     cv2.setNumThreads(1)
     run, simulation = chunk.run, _simulation(chunk.run)
-    finders, vehicle = Finders(run.scene.dock, run.scene.vehicle_camera.model, tuned), Vehicle()
+    scene, vehicle = run.scene, Vehicle()
+    finders = Finders(scene.dock, scene.vehicle_camera.model, tuned, scene.mounting)
     for step in steps[chunk.warm_up : chunk.first]:
         vehicle.decide(simulation.frame(step).image_bgr, step.time_s)
     rows: list[Row] = []
@@ -49,7 +50,7 @@ def measured_chunk(chunk: Chunk, steps: Sequence[Step], tuned: Tuned) -> Measure
     for step in steps[chunk.first : chunk.end]:
         frame = simulation.frame(step)
         view = vehicle.view(frame.image_bgr, step.time_s)
-        target = target_of(run.scene, frame.truth)
+        target = target_of(scene, frame.truth)
         shared = _shared(run, step, view)
         in_view = all(marker.in_view for marker in frame.truth.markers)
         for name in run.filters:
@@ -67,6 +68,7 @@ def measured_chunk(chunk: Chunk, steps: Sequence[Step], tuned: Tuned) -> Measure
 def _shared(run: Run, step: Step, view: View) -> Row:
     """What the rows of one frame have in common."""
     vehicle_hue_deg = degrees(view.marker_hues[run.mapping])
+    apart_deg = hue_difference_deg(step.dock_hue_deg, vehicle_hue_deg)
     row: Row = {
         "experiment": run.experiment,
         "run": run.name,
@@ -78,7 +80,8 @@ def _shared(run: Run, step: Step, view: View) -> Row:
         "time_s": step.time_s,
         "dock_hue_deg": step.dock_hue_deg,
         "vehicle_hue_deg": vehicle_hue_deg,
-        "hue_disagreement_deg": hue_difference_deg(step.dock_hue_deg, vehicle_hue_deg),
+        # Lamps that do not follow the water show neither of the two.
+        "hue_disagreement_deg": apart_deg if run.scene.dock.colour is None else None,
     }
     for side, rgb in (("", view.background.rgb), ("dock_", step.dock_background)):
         row |= {f"{side}background_{c}": v for c, v in zip("rgb", rgb, strict=True)}

@@ -88,6 +88,9 @@ class Motion:
         How far the camera is off that axis; it looks at the dock's origin all the same.
     aim_yaw_deg, aim_pitch_deg, aim_roll_deg
         How far it is turned away from there.
+    camera_roll_deg
+        How the camera is mounted: turned about its line of sight, its right side low; 90: on its
+        side, 180: upside down.
     dock, vehicle
         How the waves move them.
     """
@@ -100,6 +103,7 @@ class Motion:
     aim_yaw_deg: float = 0.0
     aim_pitch_deg: float = 0.0
     aim_roll_deg: float = 0.0
+    camera_roll_deg: float = 0.0
     dock: Bobbing = field(default_factory=Bobbing)
     vehicle: Bobbing = field(default_factory=Bobbing)
 
@@ -120,6 +124,11 @@ class Motion:
         """The dock at rest."""
         return Transform(level(self.heading_deg), np.array([0.0, 0.0, self.depth_m]))
 
+    @cached_property
+    def T_vehicle_camera(self) -> Transform:
+        """The camera in the vehicle, which has x right, y down, z forward too."""
+        return Transform(turned(0.0, 0.0, self.camera_roll_deg), np.zeros(3))
+
 
 # All that is drawn into a frame asks for the same few moments.
 @lru_cache(maxsize=32)
@@ -138,4 +147,5 @@ def _T_world_camera(motion: Motion, time_s: float) -> Transform:
     position = np.array([motion.offset_right_m, motion.offset_down_m, -distance])
     aim = turned(motion.aim_yaw_deg, motion.aim_pitch_deg, motion.aim_roll_deg)
     T_rest_vehicle = Transform(looking(-position) @ aim, position)
-    return motion.T_world_rest @ T_rest_vehicle @ motion.vehicle.at(time_s)
+    T_world_vehicle = motion.T_world_rest @ T_rest_vehicle @ motion.vehicle.at(time_s)
+    return T_world_vehicle @ motion.T_vehicle_camera

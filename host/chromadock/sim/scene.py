@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.dock import DockGeometry
+from chromadock.mounting import R_BODY_CAMERA_FORWARD, Mounting
 from chromadock.sim import scene_parts as parts
 from chromadock.sim.ambient import Ambient
 from chromadock.sim.basin import Basin
@@ -46,7 +47,7 @@ class Scene:
     basin
         Floor and wall.
     dock
-        Where the markers are.
+        Where the markers are, and their colour where it does not follow the water.
     lamp
         What shines in each.
     dark_from_s
@@ -74,6 +75,16 @@ class Scene:
     suspension: Suspension | None
     vehicle_camera: CameraSpec
     dock_camera: CameraSpec
+
+    @property
+    def mounting(self) -> Mounting | None:
+        """What a user tells a detector of how the camera sits in this vehicle.
+
+        None, nothing, where it sits as a detector takes it to sit: upright.
+        """
+        if not self.motion.camera_roll_deg:
+            return None
+        return Mounting(R_BODY_CAMERA_FORWARD @ self.motion.T_vehicle_camera.R)
 
     def works(self, time_s: float) -> NDArray[np.bool_]:
         """(N,) which markers' lamps work at a moment."""

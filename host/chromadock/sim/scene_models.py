@@ -70,6 +70,7 @@ _Span = Annotated[
 _Radius = Annotated[float, between(0.0005, 50, "m")]
 _Offset = Annotated[float, between(-20, 20, "m")]
 _Angle = Annotated[float, between(-90, 90, "degrees")]
+_Roll = Annotated[float, between(-180, 180, "degrees")]
 _Heading = Annotated[float, between(-360, 360, "degrees from north by east")]
 _Seconds = Annotated[float, between(0.01, 1e6, "s")]
 _Moment = Annotated[float, between(-1e6, 1e6, "s")]
@@ -195,6 +196,7 @@ class DockSection(_Section):
     """``[dock]``."""
 
     geometry: str = ""
+    colour: str | None = None
     markers_out: list[str] = []
     failure: list[FailureSection] = []
     frame: bool = True
@@ -247,7 +249,8 @@ class VehicleSection(_Section):
     offset_down_m: _Offset = 0.0
     aim_yaw_deg: _Angle = 0.0
     aim_pitch_deg: _Angle = 0.0
-    aim_roll_deg: Annotated[float, between(-180, 180, "degrees")] = 0.0
+    aim_roll_deg: _Roll = 0.0
+    camera_roll_deg: _Roll = 0.0
     sway: SwaySection = SwaySection()
 
 

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
+from chromadock.marker_colour import MarkerColour
 from chromadock.sim import scene_models as models
 from chromadock.sim.ambient import Ambient, Cloud
 from chromadock.sim.basin import Basin, Floor, Wall
@@ -77,6 +78,9 @@ def dock_of(section: models.DockSection, source: str) -> tuple[DockGeometry, NDA
     dock = DockGeometry.default()
     if section.geometry:
         dock = named(f"{source}: dock.geometry", lambda: DockGeometry.from_toml(section.geometry))
+    if section.colour is not None:
+        MarkerColour.parse(section.colour, f"{source}: dock.colour")
+        dock = replace(dock, colour=section.colour)
     fails = [(f.marker, f.at_s) for f in section.failure]
     named_in = [("markers_out has", name) for name in section.markers_out]
     for key, name in (*named_in, *(("failure is of", name) for name, _ in fails)):
@@ -131,6 +135,7 @@ def motion_of(file: models.SceneFile, source: str, dock_seed: int, vehicle_seed:
         aim_yaw_deg=vehicle.aim_yaw_deg,
         aim_pitch_deg=vehicle.aim_pitch_deg,
         aim_roll_deg=vehicle.aim_roll_deg,
+        camera_roll_deg=vehicle.camera_roll_deg,
         dock=Bobbing(dock_seed, **file.dock.sway.model_dump()),
         vehicle=Bobbing(vehicle_seed, **vehicle.sway.model_dump()),
     )

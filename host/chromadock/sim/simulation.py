@@ -14,6 +14,7 @@ from chromadock.colour.hsv import degrees, rgb_from_hsv
 from chromadock.detector import MAPPINGS
 from chromadock.errors import ChromadockError
 from chromadock.link.rgb565 import to_rgb565
+from chromadock.marker_colour import MarkerColour
 from chromadock.method import DEFAULT_MAPPING_NAME
 from chromadock.sim.camera_spec import CameraSpec
 from chromadock.sim.control import CameraSettings
@@ -40,7 +41,8 @@ class Step:
     settings
         The vehicle camera's.
     dock_hue_deg
-        The hue that the dock's firmware shows, 0..360.
+        The hue that the dock's firmware decides on, 0..360: what it shows, unless the scene's dock
+        has a colour of its own.
     dock_background
         The water's colour as the dock's firmware sees it, R, G, B, 0..255.
     dock_settings
@@ -102,6 +104,7 @@ class Simulation:
             Where the firmware's package is missing.
         """
         dock, led_full = _firmware(self.mapping)
+        own_duties = _own_duties(dock, self.scene.dock.colour)
         dock_camera = _Adapting(self.scene.dock_camera, self._dock)
         vehicle_camera = _Adapting(self.scene.vehicle_camera, self._vehicle)
         led_share = (0.0, 0.0, 0.0)
@@ -110,7 +113,7 @@ class Simulation:
             seen = self._dock.picture(time_s, led_share, dock_settings)
             height, width = seen.shape[:2]
             dock.frame(to_rgb565(seen), width, height, "rgb565", round(1000 * time_s))
-            led_share = _led_share(dock.duties, led_full)
+            led_share = _led_share(own_duties or dock.duties, led_full)
             settings = vehicle_camera.settings(time_s, led_share)
             water = dock.c.background
             yield Step(
@@ -167,6 +170,25 @@ def _firmware(mapping: str) -> tuple[Any, int]:
             "run `make setup` in the project's folder"
         ) from None
     return Dock(Settings(mapping=mapping)), int(lib.LED_FULL)
+
+
+def _own_duties(dock: Any, colour: str | None) -> tuple[int, int, int] | None:
+    """What the firmware core gives its LEDs for a colour that does not follow the water.
+
+    White is all three at full power.  None where the core decides, as it does too for ``any``: then
+    only the vehicle does not know.
+    """
+    own = None if colour is None else MarkerColour.parse(colour)
+    if own is None or own.kind == "any":
+        return None
+    from chromadock_firmware import ffi, lib
+
+    duty, led = ffi.new("uint16_t[3]"), ffi.addressof(dock.c.settings, "led")
+    if own.hue is None:
+        lib.led_raw_duties(duty, bytes([255, 255, 255]), led)
+    else:
+        lib.led_duties(duty, own.hue, led)
+    return duty[0], duty[1], duty[2]
 
 
 def _led_share(duties: tuple[int, int, int], full: int) -> tuple[float, float, float]:

@@ -24,7 +24,10 @@ FILTERS = {
 PROVENANCE = {
     "experiments": {
         name: {"seed": 7, "digest": "0123456789abcdef"}
-        for name in ("lake", "pool", "photographs", "rendered water", "tint", "balance", "hues")
+        for name in (
+            *("lake", "pool", "photographs", "rendered water"),
+            *("tint", "balance", "hues", "conditions"),
+        )
     },
     "versions": {"chromadock": "0.1.0", "jerlov": "0.22.0"},
 }
@@ -71,6 +74,10 @@ def runs() -> Iterator[dict[str, Any]]:
         vary = {"dock_camera.white_balance": dock, "vehicle_camera.white_balance": vehicle}
         yield run_of("balance", f"balance {dock} {vehicle}", "pool", "ternary", 3.0, vary=vary)
 
+    for condition, water, distance in itertools.product(CONDITIONS, ("quay", "pond"), (2.0, 4.0)):
+        name = f"conditions {distance:g} m {condition} {water}"
+        vary = {"condition": condition, "body of water": water}
+        yield run_of("conditions", name, "pool", "ternary", distance, vary=vary)
     for water, mapping, distance in itertools.product(
         ("brown", "green"), ("ternary", "complement", "contrast"), (3.0, 7.0)
     ):
@@ -104,7 +111,11 @@ VARIED = (
     "dock_camera.white_balance",
     "vehicle_camera.white_balance",
     "body of water",
+    "condition",
 )
+CONDITIONS = ("noon", "night", "white lamps")
+"""At noon the dock is found always; at night never at 4 m, where every other pose is wrong; white
+lamps have no hue."""
 CONTRAST_FINDS = {"brown": 1.0, "green": 0.0}
 """Share of the frames, at any distance."""
 
@@ -128,9 +139,12 @@ def run_rows(
                 "time_s": frame / 5,
                 "filter": name,
                 **measures(run, name, disagreement, rng),
+                **condition_measures(run, frame),
                 "dock_hue_deg": dock_hue,
                 "vehicle_hue_deg": (dock_hue + disagreement) % 360,
-                "hue_disagreement_deg": disagreement,
+                "hue_disagreement_deg": None
+                if varied["condition"] == "white lamps"
+                else disagreement,
                 "background_r": 40,
                 "background_g": 150,
                 "background_b": 190,
@@ -139,6 +153,14 @@ def run_rows(
                 "dock_background_b": 185,
                 "markers_in_view": bool(frame % 12),
             }
+
+
+def condition_measures(run: dict[str, Any], frame: int) -> dict[str, Any]:
+    """What replaces a filter's measures in the runs of ``CONDITIONS``."""
+    if run["experiment"] != "conditions":
+        return {}
+    lost = run["vary"]["condition"] == "night" and run["distance_m"] == 4
+    return {"correct": not lost, "wrong_pose": lost and frame % 2 == 0}
 
 
 def measures(
@@ -165,6 +187,7 @@ def measures(
         "found": correct or false,
         "correct": correct,
         "false_dock": false,
+        "wrong_pose": false,
         "range_true_m": distance,
         "range_error": error(0.01 * distance),
         "bearing_error_deg": error(0.05),

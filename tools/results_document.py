@@ -10,6 +10,7 @@ import polars as pl
 from jinja2 import FileSystemLoader
 from results_approach import approach_drawing, approach_section, read_frames
 from results_claims import claims
+from results_conditions import CONDITIONS, condition_tables
 from results_tables import (
     REALISM_M,
     REALISM_POINTS,
@@ -25,13 +26,14 @@ from chromadock.errors import ChromadockError
 from chromadock.evaluate import drawings
 from chromadock.evaluate.drawings import Drawing
 from chromadock.evaluate.filters import ROBUST
-from chromadock.evaluate.frames import Evaluation
+from chromadock.evaluate.frames import Evaluation, Sweep
 from chromadock.evaluate.gallery import read_gallery
 from chromadock.evaluate.provenance import read_provenance, sources, versions_line
 from chromadock.evaluate.rendering import environment, gallery_svg
 from chromadock.evaluate.style import filters
 from chromadock.evaluate.summary import TERNARY
 from chromadock.evaluate.tables import places, ternary_against
+from chromadock.robust.acceptance import PLACE_TOLERANCE
 
 LAKE, POOL = "lake", "pool"
 RENDERED, PHOTOGRAPHS = "rendered water", "photographs"
@@ -66,6 +68,11 @@ class Run:
             raise ChromadockError(f"{out}: not the experiments {LAKE} and {POOL}: run make results")
         return run
 
+    @property
+    def sweeps(self) -> list[Sweep]:
+        """All but the conditions, which have tables of their own."""
+        return [sweep for sweep in self.evaluation.sweeps if sweep.experiment != CONDITIONS]
+
     def of(self, *experiments: str) -> pl.DataFrame:
         """The frames of experiments that swept nothing."""
         return self.evaluation.still.filter(pl.col("experiment").is_in(experiments))
@@ -87,7 +94,7 @@ def _figures(run: Run) -> Iterator[Drawing]:
         yield replace(recall, name="photographs", title="Finding the dock before photographs")
     for study in run.evaluation.studies:
         yield drawings.compared(study)
-    for sweep in run.evaluation.sweeps:
+    for sweep in run.sweeps:
         yield drawings.swept(sweep)
     approaches = read_frames(run.out)
     if approaches is not None:
@@ -116,10 +123,15 @@ def document(run: Run, shown: Mapping[str, Drawing]) -> str:
         places=list(places(paper)),
         studies=[mapping_study(study) for study in run.evaluation.studies],
         approach=None if approaches is None else approach_section(approaches),
-        sweeps=[
-            (sweep, sweep_table(sweep), filters(sweep.frames)) for sweep in run.evaluation.sweeps
+        sweeps=[(sweep, sweep_table(sweep), filters(sweep.frames)) for sweep in run.sweeps],
+        conditions=[
+            table
+            for study in run.evaluation.sweeps
+            if study.experiment == CONDITIONS
+            for table in condition_tables(study)
         ],
         realism={name: realism(run.of(RENDERED), run.of(PHOTOGRAPHS), name) for name in COMPARED},
+        place_tolerance=PLACE_TOLERANCE,
         subjects=SUBJECTS,
         near_m=REALISM_M,
         points=REALISM_POINTS,

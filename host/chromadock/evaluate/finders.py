@@ -49,9 +49,9 @@ class Finders:
     def find(self, name: str, view: View, mapping: str) -> tuple[Found, NDArray[np.uint8]]:
         """What ``name``, one of ``FILTERS``, makes of a frame by itself, and its mask (H, W).
 
-        ``mapping`` is the run's own: the robust method looks for the hue that the dock shows, or for
-        the colour that a dock has of its own, where an adaptive filter looks for the hue of its own
-        mapping.
+        ``mapping`` is the run's own: the robust method looks for the hue that the dock shows, or
+        for the colour that a dock has of its own, where an adaptive filter looks for the hue of
+        its own mapping.
         """
         if name == ROBUST:
             look = self._look(view, mapping)

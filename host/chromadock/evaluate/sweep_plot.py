@@ -27,6 +27,8 @@ _LOG_FROM = 20
 _LABEL_APART = 2.5
 """Factor between two values that both have their label."""
 _COLUMN_IN = 2.6
+_SIDE_BY_SIDE = 5
+"""Settings whose names have room beside each other; those of more stand upright."""
 
 
 @mpl.rc_context(STYLE)
@@ -97,7 +99,10 @@ def settings(rows: pl.DataFrame, keys: Sequence[str]) -> list[tuple[str, ...]]:
 
 def _name_settings(axes: Axes, sweep: Sweep) -> None:
     every = list(dict.fromkeys(settings(sweep.frames, sweep.keys)))
-    axes.set_xticks(range(len(every)), ["\n".join(setting) for setting in every])
+    crowded = len(every) > _SIDE_BY_SIDE
+    between, turned = (", ", 90) if crowded else ("\n", 0)
+    names = [between.join(setting) for setting in every]
+    axes.set_xticks(range(len(every)), names, rotation=turned)
     axes.set_xlim(-0.6, len(every) - 0.4)
     axes.set_xlabel("\n".join(sweep.keys))
 

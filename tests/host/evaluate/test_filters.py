@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from chromadock.evaluate.finders import Finders
 from chromadock.evaluate.tuned import Box, Tuned
 from chromadock.evaluate.tuning import Example, tune
 from chromadock.evaluate.view import Vehicle
+from chromadock.mounting import R_BODY_CAMERA_FORWARD, Mounting
 
 ANY = Tuned({"pool": Box((150, 20, 30), (200, 90, 250)), "lake": Box((1, 2, 3), (4, 5, 6))}, 99, {})
 
@@ -54,6 +57,33 @@ def test_robust_is_the_detector_with_the_runs_own_mapping(mapping: str) -> None:
         )
         found += got.state == "found"
     assert found > 0
+
+
+@pytest.mark.parametrize(
+    ("colour", "mounted"), [("white", False), ("#FF00AA", False), (None, True)]
+)
+def test_robust_is_told_what_the_detector_is_told(colour: str | None, mounted: bool) -> None:
+    rng = np.random.default_rng(5)
+    dock = replace(DOCK, colour=colour)
+    mounting = Mounting(R_BODY_CAMERA_FORWARD @ np.diag([-1.0, -1.0, 1.0])) if mounted else None
+    detector = Detector(CAMERA, dock, method="robust", mounting=mounting, independent=True)
+    finders, vehicle = Finders(dock, CAMERA, ANY, mounting), Vehicle()
+    for i in range(2):
+        frame = compose(water(0.0, rng), 2.0, rng).frame_bgr
+        if mounted:
+            frame = np.ascontiguousarray(frame[::-1, ::-1])
+        # Alone: a rolling mean of one frame is that frame's.
+        expected = detector.process(frame, 3.0 * i)
+        got, mask = finders.find("robust", vehicle.view(frame, 3.0 * i), "ternary")
+        np.testing.assert_array_equal(mask > 0, detector.mask)
+        assert (got.state, got.markers, got.pose) == (
+            expected.state,
+            expected.markers,
+            expected.pose,
+        )
+        assert got.markers is not None
+        upright = got.markers["top_left"][1] < got.markers["bottom_left"][1]
+        assert upright != mounted
 
 
 def test_a_static_filter_passes_what_is_in_its_box_round_the_end_of_the_hues() -> None:

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -42,9 +44,17 @@ def test_one_marker_decides_whether_a_dock_is_right_or_false(
     assert (row["range_error"] is None) == (not correct)
 
 
+def test_a_pose_is_wrong_with_a_marker_where_none_is_or_in_another_place() -> None:
+    assert not measured(found(off(2, 3.1), (0.0, 0, 4.19)), EMPTY, TARGET)["wrong_pose"]
+    assert measured(found(off(2, 15.1)), EMPTY, TARGET)["wrong_pose"]
+    assert measured(found(off(2, 0.0), (0.0, 0, 4.21)), EMPTY, TARGET)["wrong_pose"]
+    untold = replace(found(off(2, 15.1)), state="uncertain", pose=None)
+    assert not measured(untold, EMPTY, TARGET)["wrong_pose"]
+
+
 def test_no_dock_is_neither_right_nor_false() -> None:
     row = measured(Found("not_found", 0.0), EMPTY, TARGET)
-    assert not (row["found"] or row["correct"] or row["false_dock"])
+    assert not (row["found"] or row["correct"] or row["false_dock"] or row["wrong_pose"])
     assert row["range_true_m"] == 4
 
 

@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import statistics
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -159,6 +160,7 @@ def test_only_what_varies_beyond_the_place_is_a_sweep(evaluation: Evaluation) ->
     assert names == [
         ("tint", ("vehicle_camera.tint",)),
         ("balance", ("dock_camera.white_balance", "vehicle_camera.white_balance")),
+        ("conditions", ("body of water", "condition")),
     ]
     still = {"lake", "pool", "photographs", "rendered water"}
     assert set(evaluation.still["experiment"].unique()) == still
@@ -238,6 +240,20 @@ def test_the_same_data_give_the_same_small_svg(evaluation: Evaluation) -> None:
     assert len(first[0].encode()) < MAX_SVG_BYTES
 
 
+def test_many_settings_without_numbers_stand_upright_also_where_none_has_a_hue(
+    evaluation: Evaluation,
+) -> None:
+    few, many = evaluation.sweeps[1:3]
+    turned = [
+        {label.get_rotation() for label in figures.sweep_plot(sweep).axes[1].get_xticklabels()}
+        for sweep in (few, many)
+    ]
+    assert turned == [{0.0}, {90.0}]
+    hueless = many.frames.with_columns(hue_disagreement_deg=pl.lit(None, pl.Float64))
+    names = figures.sweep_plot(replace(many, frames=hueless)).axes[1].get_xticklabels()
+    assert [name.get_text() for name in names][:2] == ["quay, noon", "pond, noon"]
+
+
 def test_all_filters_have_a_colour_a_mark_and_a_label() -> None:
     assert tuple(style.LOOKS) == filters.FILTERS
     assert set(style.MAPPING_LOOKS) == set(MAPPINGS)
@@ -269,7 +285,7 @@ def test_the_page_needs_nothing_but_itself(out: Path) -> None:
 def test_the_page_says_of_every_figure_what_it_is(out: Path, evaluation: Evaluation) -> None:
     page = (out / "report.html").read_text()
     captions = re.findall(r"<figcaption>(.*?)</figcaption>", page, re.DOTALL)
-    assert len(captions) == page.count("<figure ") == 5 + 2 + 1
+    assert len(captions) == page.count("<figure ") == 5 + 3 + 1
     for caption in captions:
         assert "SIMULATED" in caption
         assert "seed 7, digest 0123456789abcdef" in caption

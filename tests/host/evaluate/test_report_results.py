@@ -106,7 +106,7 @@ def test_the_document_says_that_it_is_simulated_and_by_what(docs: Path) -> None:
 def test_tables_are_tables(docs: Path) -> None:
     lines = (docs / "results.md").read_text().splitlines()
     tables = [list(t) for bar, t in groupby(lines, lambda line: line.startswith("|")) if bar]
-    assert len(tables) == 10
+    assert len(tables) == 12
     for table in tables:
         assert len(table) > 2
         assert set(table[1]) == {"|", "-"}
@@ -166,7 +166,7 @@ def test_without_photographs_the_document_says_so(out: Path, tmp_path: Path) -> 
 
 
 def test_a_sweep_tells_where_the_dock_is_lost(out: Path) -> None:
-    (tint, _) = Evaluation.read(out).sweeps
+    tint = Evaluation.read(out).sweeps[0]
     key = tint.keys[0]
     frames = tint.frames.with_columns(correct=pl.col(key).is_between(0.8, 1.2))
     table = sweep_table(type(tint)(tint.experiment, tint.keys, frames))
@@ -245,6 +245,36 @@ def test_what_the_text_says_of_mappings_follows_the_frames(run: Run) -> None:
     text = document(alike, figures(alike))
     assert "nowhere here more often than ternary by more than chance" in text
     assert "nowhere here less often by more than chance" in text
+
+
+def test_conditions_have_a_table_for_each_water_and_no_figure(
+    run: Run, shown: dict[str, Drawing], docs: Path
+) -> None:
+    text = (docs / "results.md").read_text()
+    section = text.partition("## Conditions")[2].partition("\n## ")[0]
+    assert section.count("| condition |") == 2
+    assert "### Quay" in section and "### Pond" in section
+    rows = [line for line in section.splitlines() if line.startswith("| n")]
+    assert [row.split(" | ")[0] for row in rows] == ["| noon", "| night"] * 2
+    for noon, night in zip(rows[::2], rows[1::2], strict=True):
+        cells = [[cell.split(" (")[0] for cell in row.split(" | ")[1:5]] for row in (noon, night)]
+        assert cells == [["100 %", "100 %", "0 %", "0 %"], ["100 %", "0 %", "0 %", "50 %"]]
+    (white, *_) = [line for line in section.splitlines() if line.startswith("| white lamps")]
+    assert white.endswith(" – | – |")
+    assert section.count("as in the first row: night, at 4 m.") == 2
+    assert section.count("Wrong poses: night, at 4 m.") == 2
+    assert not any("condition" in name for name in shown)
+    assert "### Conditions" not in text
+
+
+def test_where_all_goes_well_the_conditions_say_so(run: Run) -> None:
+    (study,) = (sweep for sweep in run.evaluation.sweeps if sweep.experiment == "conditions")
+    fine = study.frames.with_columns(correct=pl.lit(True), wrong_pose=pl.lit(False))
+    evaluation = replace(run.evaluation, sweeps=[replace(study, frames=fine)])
+    well = replace(run, evaluation=evaluation)
+    text = document(well, figures(well))
+    assert text.count("Found nowhere here less than half as often") == 2
+    assert text.count("No wrong pose.") == 2
 
 
 def test_the_tuning_is_shown(docs: Path) -> None:

@@ -98,6 +98,17 @@ def test_offsets_leave_the_dock_in_the_middle_and_aim_moves_it() -> None:
     assert right[1] < -0.1  # a camera whose right side is low sees the dock's right side high
 
 
+@pytest.mark.parametrize("roll", [90.0, 180.0, -30.0])
+def test_a_mounted_camera_sees_all_turned_about_its_line_of_sight(roll: float) -> None:
+    bobbing = Bobbing(3, 0.1, 0.2, 0.3, 4.0, 5.0, 6.0, 3.0)
+    upright, mounted = (hold(3.0, vehicle=bobbing, camera_roll_deg=deg) for deg in (0.0, roll))
+    for time_s in (0.0, 1.7):
+        wanted = about("z", -roll) @ upright.T_camera_dock(time_s).R
+        np.testing.assert_allclose(mounted.T_camera_dock(time_s).R, wanted, atol=1e-12)
+        places = [m.T_world_camera(time_s).t for m in (upright, mounted)]
+        np.testing.assert_array_equal(*places)
+
+
 def test_an_approach_is_steady_and_then_holds() -> None:
     course = Course(5.0, 1.0, 8.0)
     times = np.array([-1.0, 0.0, 2.0, 4.0, 8.0, 99.0])

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_scene import STILL
 
 from chromadock.errors import ChromadockError
 from chromadock.sim.flat_shapes import Box, Panel
 from chromadock.sim.round_shapes import Sphere, Tube
 from chromadock.sim.scene import SHIPPED, load_scene
 from chromadock.sim.water import Water
+from chromadock.track.attitude import expected
 
 POOL = (resources.files("chromadock.sim") / "scenes" / "pool.toml").read_text("utf-8")
 
@@ -106,6 +108,23 @@ def test_overrides_reach_every_table(tmp_path: Path) -> None:
     assert scene.vehicle_camera.control.ev == -1.0
     assert scene.ambient.clouds[0].illuminance_share(50.0) == pytest.approx(0.3)
     assert load_scene("pool").seed == 1  # not remembered
+
+
+def test_what_a_detector_is_told_follows_from_the_scene() -> None:
+    assert load_scene("pool").mounting is None
+    scene = load_scene("pool", {"vehicle.camera_roll_deg": 90.0, **STILL})
+    R = scene.mounting.R_body_camera
+    # On its side, its right side low: its x is the body's down, its y the body's left.
+    np.testing.assert_allclose(R, [[0, 0, 1], [0, -1, 0], [1, 0, 0]], atol=1e-12)
+    R_camera_dock, _ = expected(None, scene.mounting)
+    np.testing.assert_allclose(R_camera_dock, scene.motion.T_camera_dock(0.0).R, atol=1e-12)
+
+
+def test_a_dock_may_have_a_colour_of_its_own(tmp_path: Path) -> None:
+    assert load_scene("pool").dock.colour is None
+    assert load_scene("pool", {"dock.colour": "white"}).dock.colour == "white"
+    words = refusal("pool", {"dock.colour": "mauve"})
+    assert "pool.toml: dock.colour is 'mauve'" in words and "#RRGGBB" in words
 
 
 def test_a_lamp_may_fail_on_the_way() -> None:

@@ -78,6 +78,28 @@ def test_leds_show_the_mapping_of_the_waters_hue(tmp_path: Path) -> None:
     assert apart(hues["ternary"], 330) < 20
 
 
+@pytest.mark.parametrize(
+    ("colour", "shown"), [("white", (1, 1, 1)), ("#0000FF", (0, 0, 1)), ("#200000", (1, 0, 0))]
+)
+def test_lamps_of_a_colour_of_their_own_do_not_follow_the_water(
+    colour: str, shown: tuple[int, ...], tmp_path: Path
+) -> None:
+    for water in ("pool", "lake"):
+        simulation = Simulation(small_scene(water, tmp_path, {**STILL, "dock.colour": colour}))
+        for step in simulation.steps([0.0, 0.5]):
+            assert step.led_share == pytest.approx(shown, abs=0.001)
+
+
+def test_a_colour_that_only_the_vehicle_does_not_know_is_the_docks_own_choice(
+    tmp_path: Path,
+) -> None:
+    chosen, unknown = (
+        list(Simulation(small_scene("pool", tmp_path, {**STILL, **more})).steps([0.0, 0.5]))
+        for more in ({}, {"dock.colour": "any"})
+    )
+    assert chosen == unknown
+
+
 def test_steps_and_frames_do_not_depend_on_the_process(tmp_path: Path) -> None:
     simulation = Simulation(small_scene("lake", tmp_path, {"vehicle.distance_m": 1.0}))
     again = pickle.loads(pickle.dumps(simulation))

@@ -16,7 +16,7 @@ from chromadock.robust.layout import BORDER, Layout
 from chromadock.robust.likeness import coefficients
 from chromadock.robust.response import Response, linear
 
-MIN_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 112, 56
+MIN_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 112, 48
 RING = np.array([(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)])
 
 
@@ -57,7 +57,7 @@ def covariance_of(light: np.ndarray) -> np.ndarray:
 
 
 def scale_of(light: np.ndarray, cell: int, weights: np.ndarray) -> Scale:
-    """What the filters make of one scale."""
+    """What the filters (HUES, 3) make of one scale."""
     height, width = light.shape[:2]
     wide = max(32 // cell, 4)
     added = light - cv2.resize(resized(light, width // wide, height // wide), (width, height))
@@ -77,7 +77,8 @@ def scales_of(frame: np.ndarray, response: Response) -> list[Scale]:
     """All scales of a frame, filtered as ``response`` has been."""
     lights = lights_of(frame, response.layout)
     cells = response.layout.cells
-    return [scale_of(own, c, response.weights) for own, c in zip(lights, cells, strict=True)]
+    seen = [response.weights[:1], *[response.weights] * (len(cells) - 1)]
+    return [scale_of(*each) for each in zip(lights, cells, seen, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -100,14 +101,15 @@ def peaks_of(scales: list[Scale], response: Response) -> list[list[Peak]]:
     padded = [np.pad(s.snr, BORDER, mode="edge") for s in scales]
     tops = []
     for k, scale in enumerate(scales):
-        for y, x in np.argwhere(scale.snr > 0.7 * MIN_SNR * cells[k] / cells[0]):
+        least = MIN_SNR * max(cells[k] / cells[1], 1)
+        for y, x in np.argwhere(scale.snr > 0.7 * least):
             inside = 0 < y < scale.snr.shape[0] - 1 and 0 < x < scale.snr.shape[1] - 1
-            if not inside or scale.snr[y, x] < scale.snr[y - 1 : y + 2, x - 1 : x + 2].max():
-                continue
             near = around(padded[k], y, x, 1)
+            if not inside or scale.snr[y, x] < near.max() or scale.snr[y, x] in near[4:]:
+                continue
             corners = [near[i] + near[i + 1] + near[(i + 2) % 8] for i in range(0, 8, 2)]
             strength = (scale.snr[y, x] + max(0, *corners)) / 2
-            if strength >= MIN_SNR * cells[k] / cells[0]:
+            if strength >= least:
                 tops.append((k, y, x, strength))
     tops = sorted(tops, key=lambda top: -top[3])[: 3 * MAX_PEAKS]
     found: list[list[Peak]] = [[] for _ in scales]
@@ -196,10 +198,11 @@ def likeness_of(looks: np.ndarray, snr: float, scale: int) -> float:
     """Log likelihood ratio of a lamp to clutter."""
     with_looks, without = coefficients()
     strength = np.log(min(snr, 60.0))
-    base = np.array([1, scale == 1, scale >= 2, strength, strength**2])
+    base = np.array([1, scale == 0, scale == 2, scale >= 3, strength, strength**2])
     seen = np.clip(looks, 0, 1)
     both = np.concatenate([seen, np.sqrt(seen)])
-    return float(np.concatenate([base, both, both * strength]) @ with_looks - base @ without)
+    every = np.concatenate([base, both, both * strength, both * (scale == 0)])
+    return float(every @ with_looks - base @ without)
 
 
 def promising_of(peaks: list[Peak]) -> list[int]:

@@ -22,7 +22,11 @@
 /* Cells about each scale that repeat its outermost ones. */
 #define FRONT_BORDER 3
 
-/* Scales of a frame at most: cells of 2 to 256 pixels. */
+/* Scales of a frame at most: cells of 1 to 128 pixels, or of 2 to 256.
+ *
+ * The finest is looked at through the expected hue's filter alone.  It shows
+ * far lamps that the others merge with their holder or with each other; six
+ * filters there would cost more than all other scales together. */
 #define FRONT_SCALES 8
 
 /* Pixels: a frame has at least so many rows and columns, two surrounds. */
@@ -42,15 +46,15 @@
  * largest of several normal variables exceeds one of them by about so much. */
 #define FRONT_UNEXPECTED 0.4
 
-/* Least signal to noise of a peak at the finest scale.  Below it noise alone
- * has so many peaks that no constellation could stand out.  At a coarser scale
- * it is as much more as the cells are wider: what fills them is near. */
+/* Least signal to noise of a peak at the two finest scales.  Below it noise
+ * alone has so many peaks that no constellation could stand out.  At a coarser
+ * scale it is as much more as the cells are wider: what fills them is near. */
 #define FRONT_MIN_SNR 3.0
 
 /* The strongest peaks of each scale that are kept, so that any frame takes
  * bounded time, and how many of these are searched for markers. */
 #define FRONT_MAX_PEAKS 112
-#define FRONT_MAX_PROMISING 56
+#define FRONT_MAX_PROMISING 48
 
 /* What is seen about a peak: its looks, all about 0 to 1, 0 if it is a lamp. */
 enum {
@@ -76,15 +80,15 @@ enum {
 
 /* Columns of the regressions that weigh the looks: of strength and scale alone,
  * and of all. */
-#define FRONT_BASE 5
-#define FRONT_DESIGN 29
+#define FRONT_BASE 6
+#define FRONT_DESIGN 42
 
 /* How one image holds a frame at all scales, the finest first, below each
  * other. About each scale is a border, so that what is around a cell is at the
  * same distances in memory wherever the cell is. */
 typedef struct {
     int rows, columns;        /* of the image */
-    int scales;               /* 1 to FRONT_SCALES */
+    int scales;               /* 2 to FRONT_SCALES */
     int cell[FRONT_SCALES];   /* pixels that a cell is wide */
     int top[FRONT_SCALES];    /* row of the first cell */
     int height[FRONT_SCALES]; /* rows without the border */
@@ -97,16 +101,17 @@ typedef struct {
  * outermost cells; that of added and best is not set. */
 typedef struct {
     front_layout_t layout;
-    float *light;       /* 3 images: the mean light of each cell */
-    float *added;       /* 3 images: the same less the light of the surround */
-    float *snr;         /* the largest answer of a filter, in units of noise */
-    uint8_t *best;      /* which filter gave it, 0 to FRONT_HUES - 1 */
-    double *covariance; /* 3 x 3: of the fluctuation of finest cells */
-    float *weights;     /* FRONT_HUES x 3: the matched filters, such that finest
-                         * cells fluctuate by about 1; first the expected hue's */
-    double *axes; /* 3 x 3: the matched filter of white, and two filters that
-                   * are blind to white, such that all three fluctuate by 1,
-                   * each for itself */
+    float *light;  /* 3 images: the mean light of each cell */
+    float *added;  /* 3 images: the same less the light of the surround */
+    float *snr;    /* the largest answer of a filter, in units of noise */
+    uint8_t *best; /* which filter gave it, 0 to FRONT_HUES - 1 */
+    double
+        *covariance; /* 3 x 3: of the fluctuation of the second scale's cells */
+    float *weights;  /* FRONT_HUES x 3: the matched filters, such that those
+                      * cells fluctuate by about 1; first the expected hue's */
+    double *axes;    /* 3 x 3: the matched filter of white, and two filters that
+                      * are blind to white, such that all three fluctuate by 1,
+                      * each for itself */
 } front_frame_t;
 
 /* Peaks, those of each scale from FRONT_MAX_PEAKS times the scale on, the

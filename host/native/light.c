@@ -3,8 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Neighbours at this lag, in finest cells, share neither a marker nor JPEG's
- * blocks of 8 pixels. */
+/* The scale on whose cells the fluctuation is measured: about as wide as what
+ * the lens makes of a far lamp. */
+#define MEASURED 1
+/* Neighbours at this lag, in cells of that scale, share neither a marker nor
+ * JPEG's blocks of 8 pixels. */
 #define LAG 2
 /* The fluctuation is measured on one row in so many: 2,300 cells fix six
  * numbers to 3%. */
@@ -46,10 +49,10 @@ static float bend(const float *row)
 static void measure_fluctuation(const front_frame_t *frame)
 {
     const front_layout_t *layout = &frame->layout;
-    const int width = layout->width[0] - 2 * LAG;
+    const int width = layout->width[MEASURED] - 2 * LAG;
     image_t light[3];
     for (int c = 0; c < 3; c++)
-        light[c] = at_scale(layout, channel(layout, frame->light, c), 0);
+        light[c] = at_scale(layout, channel(layout, frame->light, c), MEASURED);
     double total = 0;
     int cells = 0;
     for (int y = ROW_STEP / 2; y < light[0].rows; y += ROW_STEP) {

@@ -74,10 +74,10 @@ static int find_summits(const front_frame_t *frame, summit_t *summits)
     int n = 0;
     for (int scale = 0; scale < layout->scales; scale++) {
         const image_t snr = at_scale(layout, frame->snr, scale);
-        const float least_snr =
-            (float)(FRONT_MIN_SNR * layout->cell[scale] / layout->cell[0]);
-        const float worth = (float)(CELL_SHARE * FRONT_MIN_SNR *
-                                    layout->cell[scale] / layout->cell[0]);
+        const float wider =
+            greater((float)layout->cell[scale] / (float)layout->cell[1], 1.0F);
+        const float least_snr = (float)FRONT_MIN_SNR * wider;
+        const float worth = (float)CELL_SHARE * least_snr;
         /* One in from the edge, so that a peak has neighbours on all sides. */
         for (int y = 1; y < snr.rows - 1; y++) {
             const float *row = row_of(snr, y);
@@ -87,9 +87,11 @@ static int find_summits(const front_frame_t *frame, summit_t *summits)
                     continue;
                 float near[8];
                 look_around(row + x, snr.stride, 1, near);
+                /* Of equal cells the first is the top: the others come after.
+                 */
                 bool top = true;
-                for (int i = 0; i < 8; i++)
-                    top &= centre >= near[i];
+                for (int i = 0; i < 4; i++)
+                    top &= centre >= near[i] && centre > near[i + 4];
                 const float strength = brightest(centre, near);
                 if (!top || strength < least_snr)
                     continue;
@@ -263,8 +265,11 @@ void front_chroma(const front_frame_t *frame, const double *added, int n,
 void front_design(const double *looks, double snr, int scale, double *row)
 {
     const double strength = log(fmin(snr, FRONT_MOST_SNR));
-    const double base[FRONT_BASE] = {1.0, scale == 1 ? 1.0 : 0.0,
-                                     scale >= 2 ? 1.0 : 0.0, strength,
+    const double base[FRONT_BASE] = {1.0,
+                                     scale == 0 ? 1.0 : 0.0,
+                                     scale == 2 ? 1.0 : 0.0,
+                                     scale >= 3 ? 1.0 : 0.0,
+                                     strength,
                                      strength * strength};
     memcpy(row, base, sizeof(base));
     double *seen = row + FRONT_BASE;
@@ -272,8 +277,12 @@ void front_design(const double *looks, double snr, int scale, double *row)
         seen[i] = fmin(fmax(looks[i], 0.0), 1.0);
         seen[FRONT_LOOKS + i] = sqrt(seen[i]);
     }
-    for (int i = 0; i < 2 * FRONT_LOOKS; i++)
+    /* At the finest scale the same number of cells is half as far, and a lamp
+     * has more about it. */
+    for (int i = 0; i < 2 * FRONT_LOOKS; i++) {
         seen[2 * FRONT_LOOKS + i] = seen[i] * strength;
+        seen[4 * FRONT_LOOKS + i] = scale == 0 ? seen[i] : 0.0;
+    }
 }
 
 /* Natural log of how much likelier such a peak is a lamp than clutter: two

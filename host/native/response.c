@@ -23,7 +23,8 @@ typedef struct {
     image_t snr;
     uint8_t *best;
     bool *clipped;   /* of each row, whether it may have a clipped cell */
-    float *sums;     /* FRONT_HUES rows */
+    int hues;        /* filters that are looked through */
+    float *sums;     /* as many rows */
     float *answer;   /* one row */
     int *which;      /* one row */
     place_t *places; /* one row */
@@ -123,10 +124,10 @@ static void measure_noise(work_t *work, const float (*weights)[3])
     const float factor = cells_mean_factor(whole.rows, columns, blocks);
     for (int k = 0; k < blocks.rows; k++) {
         const span_t span = cells_span(k, whole.rows, blocks.rows);
-        memset(work->sums, 0, (size_t)(FRONT_HUES * columns) * sizeof(float));
+        memset(work->sums, 0, (size_t)(work->hues * columns) * sizeof(float));
         for (int y = span.first; y <= span.last; y++) {
             const float share = cells_share(&span, y);
-            for (int hue = 0; hue < FRONT_HUES; hue++) {
+            for (int hue = 0; hue < work->hues; hue++) {
                 answer_row(work, y, weights[hue]);
                 const float *restrict answer = work->answer;
                 float *restrict sums = work->sums + hue * columns;
@@ -134,13 +135,13 @@ static void measure_noise(work_t *work, const float (*weights)[3])
                     sums[x] += share * fabsf(answer[x]);
             }
         }
-        for (int hue = 0; hue < FRONT_HUES; hue++) {
+        for (int hue = 0; hue < work->hues; hue++) {
             const image_t noise = parts_of(work->coarse, whole, BLOCK, hue);
             cells_sum_parts(work->sums + hue * columns, columns,
                             row_of(noise, k), noise.columns, factor);
         }
     }
-    for (int hue = 0; hue < FRONT_HUES; hue++) {
+    for (int hue = 0; hue < work->hues; hue++) {
         const image_t noise = parts_of(work->coarse, whole, BLOCK, hue);
         const int n = noise.rows * noise.columns;
         memcpy(work->spare, noise.first, (size_t)n * sizeof(float));
@@ -152,7 +153,7 @@ static void measure_noise(work_t *work, const float (*weights)[3])
         }
         cells_smooth(noise, work->spare);
     }
-    draw_all_out(work, BLOCK, FRONT_HUES);
+    draw_all_out(work, BLOCK, work->hues);
 }
 
 /* The largest answer over its noise, and whose it is. */
@@ -169,7 +170,7 @@ static void keep_largest(work_t *work, const float (*weights)[3],
             snr[x] = -FLT_MAX;
             which[x] = 0;
         }
-        for (int hue = 0; hue < FRONT_HUES; hue++) {
+        for (int hue = 0; hue < work->hues; hue++) {
             const image_t drawn = drawn_out(work->drawn, whole, BLOCK, hue);
             const float *restrict above = row_of(drawn, p.before);
             const float *restrict below = row_of(drawn, p.after);
@@ -200,7 +201,8 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
     const int wide =
         most(FRONT_SURROUND_PIXELS / layout->cell[scale], FRONT_SURROUND_CELLS);
     work_t work = {.snr = at_scale(layout, frame->snr, scale),
-                   .best = frame->best + first_cell(layout, scale)};
+                   .best = frame->best + first_cell(layout, scale),
+                   .hues = scale == 0 ? 1 : FRONT_HUES};
     for (int c = 0; c < 3; c++) {
         float *light = channel(layout, frame->light, c);
         float *added = channel(layout, frame->added, c);

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from chromadock import method
-from chromadock.colour import working_image as module
 from chromadock.colour.working_image import RGB565_SCALE, RGB888_SCALE, working_image
 
 CELLS = (method.WORKING_HEIGHT, method.WORKING_WIDTH)
@@ -52,13 +51,21 @@ def test_the_largest_frame_does_not_overflow() -> None:
     assert (working_image(pixels) == 255).all()
 
 
-@pytest.mark.parametrize("size", [(480, 640), (720, 1280), (1080, 1920)])
-def test_both_ways_agree_where_both_apply(size: tuple[int, int]) -> None:
-    rng = np.random.default_rng(1)
-    pixels = rng.integers(0, 256, (*size, 3), np.uint8)
-    fast, _ = module._equal_boxes(pixels)
-    slow, _ = module._unequal_boxes(pixels)
-    assert np.array_equal(fast, slow)
+@pytest.mark.parametrize(
+    "size", [(480, 640), (61, 83), (59, 79), (7, 5), (1, 1), (479, 1281), (60 * 300, 80)]
+)
+def test_each_cell_of_a_frame_of_any_size_has_the_pixels_that_it_covers(
+    size: tuple[int, int],
+) -> None:
+    pixels = np.random.default_rng(1).integers(0, 256, (*size, 3), np.uint8)
+    averaged = working_image(pixels)
+    for y in range(0, CELLS[0], 7):
+        top, bottom = y * size[0] // CELLS[0], (y + 1) * size[0] // CELLS[0]
+        for x in range(0, CELLS[1], 7):
+            left, right = x * size[1] // CELLS[1], (x + 1) * size[1] // CELLS[1]
+            box = pixels[top : max(bottom, top + 1), left : max(right, left + 1)].reshape(-1, 3)
+            total, count = box.sum(axis=0, dtype=np.int64), len(box)
+            assert averaged[y, x].tolist() == ((2 * total + count) // (2 * count)).tolist()
 
 
 def test_a_view_of_a_frame_counts_like_its_copy() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock import method
+from chromadock._native import ffi, lib
 
 RGB888_SCALE = (255, 255, 255)
 RGB565_SCALE = (31, 63, 31)
@@ -38,12 +39,18 @@ def working_image(
     (60, 80, 3) uint8, same channel order, 0..255, rounded once, halves up.
     """
     height, width = pixels.shape[:2]
-    whole = height % method.WORKING_HEIGHT == 0 and width % method.WORKING_WIDTH == 0
-    small = height <= method.MAX_FRAME_HEIGHT and width <= method.MAX_FRAME_WIDTH
-    sums, count = _equal_boxes(pixels) if whole and small else _unequal_boxes(pixels)
-    full = np.asarray(scale, dtype=np.float64) * count
+    pixels = np.ascontiguousarray(pixels)
+    sums = np.empty((method.WORKING_HEIGHT, method.WORKING_WIDTH, 3), np.uint32)
+    lib.boxes_sum(
+        ffi.from_buffer("uint8_t[]", pixels),
+        *(height, width, method.WORKING_HEIGHT, method.WORKING_WIDTH),
+        ffi.from_buffer("uint16_t[]", np.empty(3 * width, np.uint16)),
+        ffi.from_buffer("uint32_t[]", sums),
+    )
+    count = np.outer(*(_pixels(*each) for each in zip(pixels.shape, sums.shape[:2], strict=False)))
+    full = np.asarray(scale, dtype=np.float64) * count[..., None]
     # Exact: no quotient of integers below 2^53 rounds up to a whole number.
-    return np.asarray((510 * sums + full) / (2 * full)).astype(np.uint8)
+    return np.asarray((510 * sums.astype(np.float64) + full) / (2 * full)).astype(np.uint8)
 
 
 def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -51,42 +58,8 @@ def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return np.asarray(cv2.GaussianBlur(image, (3, 3), 0, borderType=cv2.BORDER_REPLICATE), np.uint8)
 
 
-def _equal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Sums (60, 80, 3) and counts (1, 80, 1) of a frame whose cells have all the same whole size.
-
-    Exact, and four times as fast as the other: the 64 rows at most of a cell of the largest
-    frame add up in 16 bits, its 64 x 64 pixels in float32, which holds integers up to 2^24.
-    """
-    rows = pixels.shape[0] // method.WORKING_HEIGHT
-    columns = pixels.shape[1] // method.WORKING_WIDTH
-    stacked = pixels.reshape(method.WORKING_HEIGHT, rows, -1)
-    upright = np.add.reduce(stacked, axis=1, dtype=np.uint16)
-    # OpenCV's product keeps to the threads that OpenCV is allowed; numpy's starts its own.
-    cells = upright.reshape(-1, 3 * columns).astype(np.float32)
-    sums = cv2.gemm(cells, _by_channel(columns), 1, np.empty(0), 0)
-    sums = sums.reshape(method.WORKING_HEIGHT, method.WORKING_WIDTH, 3)
-    # A count for each column: numpy is slow to repeat a single one for three channels.
-    return sums.astype(np.float64), np.full((1, method.WORKING_WIDTH, 1), rows * columns)
-
-
 @cache
-def _by_channel(columns: int) -> NDArray[np.float32]:
-    """(3 columns, 3): adds up the pixels of a row, each channel to itself."""
-    return np.tile(np.eye(3, dtype=np.float32), (columns, 1))
-
-
-def _unequal_boxes(pixels: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Sums (60, 80, 3) and counts (60, 80, 1) for any size."""
-    y0, y1 = _boxes(pixels.shape[0], method.WORKING_HEIGHT)
-    x0, x1 = _boxes(pixels.shape[1], method.WORKING_WIDTH)
-    # Sums may wrap in 32 bits; their differences, the boxes, do not.
-    integral = cv2.integral(pixels).view(np.uint32)
-    top, bottom = integral[y0], integral[y1]
-    sums = (bottom[:, x1] - bottom[:, x0] - top[:, x1] + top[:, x0]).astype(np.float64)
-    return sums, ((y1 - y0)[:, None] * (x1 - x0)[None, :])[..., None]
-
-
-def _boxes(size: int, cells: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """First and one past the last source pixel of each cell."""
+def _pixels(size: int, cells: int) -> NDArray[np.intp]:
+    """(cells,) how many of ``size`` pixels each cell covers along one axis."""
     edges = np.arange(cells + 1) * size // cells
-    return edges[:-1], np.maximum(edges[1:], edges[:-1] + 1)
+    return np.maximum(np.diff(edges), 1)

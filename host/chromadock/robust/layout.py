@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from chromadock.robust.native import ffi, lib
 
 FINE_CELL = 4
-"""Pixels: the lens, the halo and JPEG spread a far marker's light about as wide, so that a
-finer grid only adds noise."""
+"""Pixels: the lens, the halo and JPEG spread a far marker's light about as wide.  Cells of the
+second scale are as large; those of the finest are half as wide, for markers close together."""
 
 SMALL_FRAME = 400
-"""Rows: a frame with fewer shows far markers closer together, and has finest cells half as wide."""
+"""Rows: a frame with fewer shows far markers closer together, and has all cells half as wide."""
 
 BORDER: int = lib.FRONT_BORDER
 """Cells about each scale that repeat its outermost."""
@@ -24,7 +24,7 @@ BORDER: int = lib.FRONT_BORDER
 
 def finest_cell(width: int, height: int) -> int:
     """Pixels that the finest cells of frames are wide."""
-    return FINE_CELL // 2 if min(width, height) < SMALL_FRAME else FINE_CELL
+    return FINE_CELL // 4 if min(width, height) < SMALL_FRAME else FINE_CELL // 2
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -48,7 +48,8 @@ class Layout:
     @lru_cache(maxsize=4)
     def of(cls, height: int, width: int, coarsest: float) -> Layout:
         """For frames of ``height`` x ``width`` pixels and cells of up to ``coarsest``."""
-        cells = [finest_cell(width, height)]
+        finest = finest_cell(width, height)
+        cells = [finest, 2 * finest]
         while 2 * cells[-1] <= coarsest and len(cells) < lib.FRONT_SCALES:
             cells.append(2 * cells[-1])
         shapes = np.array([(height // cell, width // cell) for cell in cells])

@@ -28,7 +28,7 @@ Real = NDArray[np.float64]
 
 
 def design(looks: Real, snr: Real, scale: NDArray[np.intp]) -> tuple[Real, Real]:
-    """Of N peaks (N, 5) what strength and scale are, and (N, 24) what is seen.
+    """Of N peaks (N, 6) what strength and scale are, and (N, 36) what is seen.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def design(looks: Real, snr: Real, scale: NDArray[np.intp]) -> tuple[Real, Real]
 
 @cache
 def coefficients() -> tuple[Real, Real]:
-    """Of the regression with looks (29,) and of that without (5,)."""
+    """Of the regression with looks (42,) and of that without (6,)."""
     with resources.as_file(resources.files(__package__) / FILE) as path:
         table = read_toml(path)
     with_looks = np.array(table["with_looks"], np.float64)

@@ -114,8 +114,8 @@ class RobustMethod:
 
 
 def _standing_out(response: Response) -> NDArray[np.bool_]:
-    """Which finest cells are above the least signal to noise."""
-    return np.asarray(response.snr[response.layout.inside(0)] >= MIN_SNR)
+    """Which cells of the finest scale that shows all hues are above the least signal to noise."""
+    return np.asarray(response.snr[response.layout.inside(1)] >= MIN_SNR)
 
 
 def _blobs(best: Constellation | None, peaks: dict[int, Peaks]) -> tuple[Blob, ...]:

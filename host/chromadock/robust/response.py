@@ -105,9 +105,7 @@ def respond(
         raise ValueError(f"a frame has {MIN_SIDE} pixels or more each way")
     coarsest = min(focal_px * COARSEST_CELL_RAD, min(height, width) / 16)
     layout = Layout.of(height, width, coarsest)
-    finest = _halved(frame_bgr)
-    if layout.cells[0] > 2:
-        finest = _halved(finest)
+    finest = np.ascontiguousarray(frame_bgr if layout.cells[0] == 1 else _halved(frame_bgr))
     light = np.empty((3, *layout.shape), np.float32)
     added = np.empty_like(light)
     snr = np.empty(layout.shape, np.float32)

@@ -99,6 +99,6 @@ def test_markers_at_3_m_have_one_chroma_whatever_hue_is_looked_for(off: int) -> 
         hue = (marker_hue(seen, "ternary") + off) % HUE_RANGE
         response = respond(scene.frame_bgr, hue, focal_px(CAMERA))
         column, row = np.floor((scene.pixels + 0.5) / FINE_CELL).astype(np.intp).T
-        added = response.added_at(response.layout.at(0, row, column))
+        added = response.added_at(response.layout.at(1, row, column))
         spreads.append(response.chroma(added).std(axis=0, ddof=1))
     assert np.median(spreads) < SPREAD

@@ -37,7 +37,7 @@ def finest(response: Response) -> np.ndarray:
 
 def test_of_plain_water_each_filter_hears_noise_of_one_and_few_cells_stand_out() -> None:
     response = respond(water(), RED, FOCAL_PX)
-    inside = response.layout.inside(0)
+    inside = response.layout.inside(1)
     heard = np.tensordot(response.weights, response.added[:, inside[0], inside[1]], 1)
     assert heard.mean(axis=(1, 2)) == pytest.approx(0, abs=0.1)
     assert heard.std(axis=(1, 2)) == pytest.approx(1, abs=0.2)
@@ -49,7 +49,7 @@ def test_no_other_filter_hears_the_markers_colour_better() -> None:
     frame = water()
     response = respond(frame, RED, FOCAL_PX)
     signature = np.array([0.0, 0.0, 1.0])
-    rows, columns = response.layout.inside(0)
+    rows, columns = response.layout.inside(1)
     light = np.ascontiguousarray(np.moveaxis(response.light[:, rows, columns], 0, 2))
     flat = light - cv2.blur(light, (9, 9))
 
@@ -93,7 +93,7 @@ def test_what_a_lamp_adds_is_told_from_the_water_behind_it() -> None:
     frame = with_lamps((colour + noise).astype(np.uint8), places, 3)
     response = respond(frame, RED, FOCAL_PX)
     column, row = np.floor((places + 0.5) / FINE_CELL).astype(np.intp).T
-    added = response.added_at(response.layout.at(0, row, column))
+    added = response.added_at(response.layout.at(1, row, column))
     assert added[:, 2] == pytest.approx(np.median(added[:, 2]), rel=0.15)
     assert np.abs(added[:, :2]).max() < 0.3 * added[:, 2].min()
     assert np.ptp(response.chroma(added), axis=0).max() < 0.3
@@ -140,7 +140,7 @@ def test_a_frame_of_one_value_has_no_peaks(value: int) -> None:
 
 def test_each_cell_of_the_image_of_all_scales_is_where_its_index_says() -> None:
     layout = respond(water(), RED, FOCAL_PX).layout
-    assert layout.cells == (FINE_CELL, 2 * FINE_CELL, 4 * FINE_CELL)
+    assert layout.cells == (FINE_CELL // 2, FINE_CELL, 2 * FINE_CELL, 4 * FINE_CELL)
     index = np.arange(np.prod(layout.shape)).reshape(layout.shape)
     for scale, (height, width) in enumerate(layout.shapes):
         row, column = (i.ravel() for i in np.mgrid[:height, :width])

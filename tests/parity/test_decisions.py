@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from comparison import assert_same, c_decision, numpy_decision
 
-from chromadock.colour.marker import MAPPINGS
+from chromadock.choices import MAPPINGS
 
 ROOT = Path(__file__).resolve().parents[2]
 PHOTOGRAPHS = ROOT.parent / "shared" / "data" / "transdec"

@@ -97,7 +97,7 @@ class SunAndSky:
 
 @cache  # it depends on nothing else, and a simulation has a source of light for each of its waters
 def _sky_factor(phase: PhaseFunction) -> Floats:
-    """(n,) g of an evenly bright sky, whose light fills Snell's cone, in directions ``_SKY_D_Z``."""
+    """(n,) g of an evenly bright sky, whose light fills Snell's cone, along ``_SKY_D_Z``."""
     d_z = _SKY_D_Z
     critical = math.sqrt(1 - 1 / REFRACTIVE_INDEX**2)
     cosine = critical + (1 - critical) * (np.arange(_ZENITHS) + 0.5) / _ZENITHS

@@ -14,9 +14,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from chromadock import method
+from chromadock.choices import MAPPINGS
 from chromadock.colour.background import BackgroundColour
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.colour.marker import MAPPINGS, marker_hue
+from chromadock.colour.marker import marker_hue
 from chromadock.evaluate.store import write_whole
 from chromadock.evaluate.style import MAPPING_LOOKS, STYLE, WIDTH_IN, svg
 

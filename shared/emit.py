@@ -98,14 +98,12 @@ def c_tables(banner: str, m: Method, tables: Tables) -> str:
     return "\n".join(parts)
 
 
-def python(banner: str, m: Method, digest: str, tables: Tables) -> str:
-    """``method.py``: the same constants and tables for numpy."""
+def python(banner: str, m: Method, digest: str) -> str:
+    """``method.py``: the same constants."""
     observed = m["observed"]
     lines = [
         f"# {banner}",
-        '"""The numbers that dock and vehicle share, and their lookup tables."""',
-        "",
-        "import numpy as np",
+        '"""The numbers that dock and vehicle share; ``method_tables`` has the lookup tables."""',
         "",
         f'DIGEST = "{digest}"',
         "",
@@ -116,6 +114,21 @@ def python(banner: str, m: Method, digest: str, tables: Tables) -> str:
         f"HUE_WINDOW_DEG = {observed['hue_window_deg']}",
         f"SATURATION_WINDOW = {observed['saturation_window']}",
         f"VALUE_WINDOW = {observed['value_window']}",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def python_tables(banner: str, tables: Tables) -> str:
+    """``method_tables.py``: the same tables for numpy.
+
+    Apart from the constants, which are read also by what must start without numpy.
+    """
+    lines = [
+        f"# {banner}",
+        '"""The lookup tables that dock and vehicle share."""',
+        "",
+        "import numpy as np",
         "",
     ]
     for name, values in tables.items():

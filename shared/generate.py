@@ -77,7 +77,8 @@ def outputs() -> dict[str, bytes]:
         "docs/parameters.md": emit_parameters.page(settings_banner, settings),
         "firmware/lib/dockcore/src/method.h": emit.c_header(banner, method, digest(method), lookup),
         "firmware/lib/dockcore/src/method.c": emit.c_tables(banner, method, lookup),
-        "host/chromadock/method.py": emit.python(banner, method, digest(method), lookup),
+        "host/chromadock/method.py": emit.python(banner, method, digest(method)),
+        "host/chromadock/method_tables.py": emit.python_tables(banner, lookup),
         "shared/vectors/golden.json": emit.vectors_json(vectors),
         "tests/firmware/golden.c": emit.c_vectors(
             banner, vectors, hashlib.sha256(pixels).hexdigest()

@@ -63,8 +63,10 @@ def compose(
         centre = (float(pixel[0]), float(pixel[1]))
         focal = float(CAMERA.matrix[0, 0])
         add_led(light, centre, LED_RADIANCE * pure, range_m, focal, attenuation)
-    noise = rng.normal(0, 2, light.shape)
-    encoded = np.clip(np.rint(to_encoded(light) + noise), 0, 255).astype(np.uint8)
+    noisy = rng.normal(0, 2, light.shape)
+    noisy += to_encoded(light)
+    # Into the same array: a new one of this size costs the system more than the sum.
+    encoded = np.clip(np.rint(noisy, out=noisy), 0, 255, out=noisy).astype(np.uint8)
     jpeg = cv2.imencode(".jpg", encoded[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 92])[1]
     return Composite(cv2.imdecode(jpeg, cv2.IMREAD_COLOR), R, t, pixels)
 

@@ -20,12 +20,24 @@ SCATTERED_SHARE = 0.5
 
 def to_linear(rgb: ArrayLike) -> NDArray[np.float32]:
     """8-bit gamma-encoded colour to linear light 0..1."""
+    rgb = np.asarray(rgb)
+    return _LINEAR[rgb] if rgb.dtype == np.uint8 else _to_linear(rgb)
+
+
+def _to_linear(rgb: ArrayLike) -> NDArray[np.float32]:
     return np.asarray((np.asarray(rgb, np.float32) / 255) ** GAMMA, np.float32)
+
+
+_LINEAR = _to_linear(np.arange(256))
+"""Of each value of 8 bits: a picture has a million, and their power takes its time."""
 
 
 def to_encoded(light: NDArray[np.float32]) -> NDArray[np.uint8]:
     """Linear light to 8 bits, clipped at full scale."""
-    return np.asarray(np.rint(255 * np.clip(light, 0, 1) ** (1 / GAMMA)), np.uint8)
+    encoded = np.clip(light, 0, 1)
+    encoded **= 1 / GAMMA
+    encoded *= 255
+    return np.rint(encoded, out=encoded).astype(np.uint8)
 
 
 def add_led(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import socket
 import sys
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Thread
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import pytest
 from serial.urlhandler import protocol_socket
@@ -100,7 +102,9 @@ def chromadock(capsys: pytest.CaptureFixture[str], *arguments: object) -> Done:
     terminate, argv = signal.getsignal(signal.SIGTERM), sys.argv
     sys.argv = ["chromadock", *map(str, arguments)]
     try:
-        cli.main()
+        # What it sets for its libraries must not reach the programs that later tests start.
+        with patch.dict(os.environ):
+            cli.main()
     except SystemExit as leaving:
         captured = capsys.readouterr()
         return Done(int(leaving.code or 0), captured.out, captured.err)

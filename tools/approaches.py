@@ -32,7 +32,7 @@ from approaches_tables import RUN, by_run, in_sum, of_no_dock, of_photographs
 from fixed import fixed_factors
 from step import ROOT
 
-from chromadock.detector import MAPPINGS
+from chromadock.choices import MAPPINGS
 from chromadock.errors import ChromadockError
 from chromadock.variety import Backdrops, Half
 from chromadock.variety.backdrops import pictures

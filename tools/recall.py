@@ -28,7 +28,7 @@ from recall_tables import Row, by_distance, by_factors
 from recall_trials import photograph_trial, scene_trial
 from step import ROOT
 
-from chromadock.detector import DEFAULT_METHOD, METHODS
+from chromadock.choices import DEFAULT_METHOD, METHODS
 from chromadock.errors import ChromadockError
 from chromadock.variety import Backdrops, Half
 from chromadock.variety.backdrops import pictures

@@ -27,7 +27,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from robust_composites import CAMERA, DOCK, compose, read
 
 from chromadock import Detection, Detector
-from chromadock.detector import MAPPINGS
+from chromadock.choices import MAPPINGS
 from chromadock.rotation import matrix_from_quaternion
 
 PHOTOGRAPHS = ROOT.parent / "shared" / "data" / "transdec"

@@ -11,7 +11,7 @@ import numpy as np
 from limit import standing_out
 
 from chromadock import CameraModel, Detection, Detector, DockGeometry
-from chromadock.detector import MAPPINGS
+from chromadock.choices import MAPPINGS
 from chromadock.variety import Backdrops, Scene, Truth, draw, render
 from chromadock.variety.backdrops import read
 from chromadock.variety.cameras import camera_model

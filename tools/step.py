@@ -39,9 +39,11 @@ def show_step(name: str, step: Callable[[], Outcome]) -> Outcome:
     status = "FAIL" if outcome.failed else "ok" if outcome.passed else "skip"
     count = outcome.passed + outcome.failed
     cases = f"{count} cases" if count > 1 else ""
-    print(f"{status:5} {name:24} {cases:>10} {seconds:6.1f} s", flush=True)
+    lines = [f"{status:5} {name:24} {cases:>10} {seconds:6.1f} s"]
     if outcome.failed:
-        print(outcome.output.rstrip(), flush=True)
+        lines.append(outcome.output.rstrip())
+    # At one stroke: another step may run at the same time.
+    print("".join(f"{line}\n" for line in lines), end="", flush=True)
     return outcome
 
 

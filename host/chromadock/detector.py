@@ -13,9 +13,16 @@ from numpy.typing import NDArray
 
 from chromadock import method as contract
 from chromadock.camera import CameraModel
+from chromadock.choices import (
+    DEFAULT_MAPPING,
+    DEFAULT_METHOD,
+    FALLBACK_HUE_DEG,
+    MAPPINGS,
+    METHODS,
+)
 from chromadock.colour.background import BackgroundColour, background_colour
 from chromadock.colour.hsv import degrees, nearest_hue
-from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue, observed_colour
+from chromadock.colour.marker import RollingHue, marker_hue, observed_colour
 from chromadock.colour.working_image import smooth, working_image
 from chromadock.detection import Background, Detection, Marker
 from chromadock.dock import DockGeometry
@@ -34,14 +41,10 @@ _METHODS: dict[str, Callable[[DockGeometry], Method]] = {
     "robust": RobustMethod,
     "paper": PaperMethod,
 }
-METHODS = tuple(_METHODS)
-"""Ways to find the constellation; ``MAPPINGS`` are those to choose the colour."""
-DEFAULT_METHOD = "robust"
 _TRACKED = frozenset({"robust"})
 """Methods that weigh their evidence and tell how sure a pose is, which a track needs."""
 _MASKED = frozenset({"paper"})
 """Methods that look at pixels of one colour only."""
-FALLBACK_HUE_DEG = degrees(contract.FALLBACK_HUE)
 
 __all__ = ["DEFAULT_METHOD", "FALLBACK_HUE_DEG", "MAPPINGS", "METHODS", "Detector"]
 
@@ -84,7 +87,7 @@ class Detector:
         camera: CameraModel | None,
         dock: DockGeometry,
         method: str = DEFAULT_METHOD,
-        mapping: str = contract.DEFAULT_MAPPING_NAME,
+        mapping: str = DEFAULT_MAPPING,
         independent: bool = False,
         mounting: Mounting | None = None,
         marker_colour: MarkerColour | str | None = None,

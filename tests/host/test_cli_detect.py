@@ -1,4 +1,8 @@
-"""``chromadock detect`` as the user runs it: in a process of its own."""
+"""``chromadock detect`` as the user runs it.
+
+In a process of its own where OpenCV or FFmpeg might complain too, where it is stopped, or where it
+writes to a terminal; in the tests' process, which is far quicker, where it is our line that counts.
+"""
 
 import fcntl
 import json
@@ -15,6 +19,7 @@ import cv2
 import numpy as np
 import pytest
 from PIL import Image
+from simulation import chromadock
 
 from chromadock.camera import CameraModel
 from chromadock.detector import Detector
@@ -93,6 +98,18 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.fixture
+def detect_here(folder, capsys, monkeypatch):
+    """Runs the command in this process, in ``folder``."""
+    monkeypatch.chdir(folder)
+
+    def run(*arguments):
+        done = chromadock(capsys, "detect", *arguments)
+        return subprocess.CompletedProcess(arguments, done.status, done.out, done.err)
+
+    return run
+
+
 # --- what it tells ---
 
 
@@ -124,32 +141,32 @@ def test_without_json_it_is_a_table_and_a_summary(folder):
     assert summary == "3 frames, 0 found, 0 skipped"
 
 
-def test_a_colour_that_is_given_is_looked_for_and_told(folder):
+def test_a_colour_that_is_given_is_looked_for_and_told(folder, detect_here):
     (folder / "ring.toml").write_text(
         'colour = "white"\n'
         + "".join(f'[[marker]]\nname = "m{n}"\nposition = [{n}, {n * n}, 0]\n' for n in (0, 1, 2))
     )
-    of_file = detect("in", "--json", "--dock", "ring.toml", cwd=folder)
+    of_file = detect_here("in", "--json", "--dock", "ring.toml")
     assert json.loads(of_file.stdout.splitlines()[0])["marker"]["given"] == "white"
     assert of_file.stderr.splitlines()[0] == (
         "chromadock: looking for markers of colour white, whatever the water is"
     )
-    flag = detect("in", "--dock", "ring.toml", "--marker-colour", "#0000ff", cwd=folder)
+    flag = detect_here("in", "--dock", "ring.toml", "--marker-colour", "#0000ff")
     assert flag.stderr.splitlines() == [
         "chromadock: looking for markers of colour #0000FF, hue 240 degrees, whatever the water is"
     ]
 
 
-def test_the_fallback_hue_can_be_set(folder):
+def test_the_fallback_hue_can_be_set(folder, detect_here):
     cv2.imwrite(str(folder / "grey.png"), np.full((480, 640, 3), 120, np.uint8))
     marker = [
-        json.loads(detect("grey.png", "--json", *options, cwd=folder).stdout)["marker"]
+        json.loads(detect_here("grey.png", "--json", *options).stdout)["marker"]
         for options in ((), ("--fallback-hue", "300"))
     ]
     assert [m["hue_deg"] for m in marker] == [120.0, 300.0]
 
 
-def test_the_dock_is_found_with_and_without_a_calibration(folder):
+def test_the_dock_is_found_with_and_without_a_calibration(folder, detect_here):
     cv2.imwrite(str(folder / "dock.png"), dock_frame())
     (folder / "cam.yaml").write_text(CAMERA.format(width=640, height=480, f=1024))
     rough = detect("dock.png", "--json", cwd=folder)
@@ -158,7 +175,7 @@ def test_the_dock_is_found_with_and_without_a_calibration(folder):
     assert record["pose"]["t"] == pytest.approx([0, 0, 1.5], abs=0.03)
     assert set(record["markers"]) == set(DockGeometry.default().names)
     assert rough.stderr.count("warning: no --camera") == 1
-    exact = detect("dock.png", "--json", "--camera", "cam.yaml", cwd=folder)
+    exact = detect_here("dock.png", "--json", "--camera", "cam.yaml")
     # Twice the focal length: the same picture is twice as far away.
     assert json.loads(exact.stdout)["pose"]["t"][2] == pytest.approx(3.0, abs=0.06)
     assert "warning" not in exact.stderr
@@ -251,16 +268,33 @@ def test_a_corrupt_picture_is_reported_skipped_and_counted(folder):
 
 
 @pytest.mark.parametrize(
+    ("source", "says"),
+    [
+        ("none", "none: no such file or folder: give"),
+        ("none.mp4", "none.mp4: no such file or folder: give"),
+        ("in/*.tif", "in/*.tif: no picture matches: check"),
+        ("empty", "empty: no pictures in this folder: it needs"),
+        ("empty.mp4", "empty.mp4: the file is empty: copy it again"),
+        ("notes.txt", "notes.txt: cannot be read as a video or picture: check"),
+        ("broken.png", "broken.png: not a whole picture"),
+        ("97", "camera 97: does not open: check"),
+    ],
+)
+def test_a_bad_source_is_refused_in_one_line_that_tells_the_mend(folder, source, says):
+    (folder / "empty").mkdir()
+    (folder / "empty.mp4").touch()
+    (folder / "notes.txt").write_text("the water was green today\n")
+    (folder / "broken.png").write_bytes((folder / "in" / "1.png").read_bytes()[:300])
+    before = listed(folder)
+    done = detect(source, "--json", "--overlay", "out", cwd=folder)
+    refused(done, says)
+    assert done.stdout == ""
+    assert listed(folder) == before
+
+
+@pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["none"], "none: no such file or folder: give"),
-        (["none.mp4"], "none.mp4: no such file or folder: give"),
-        (["in/*.tif"], "in/*.tif: no picture matches: check"),
-        (["empty"], "empty: no pictures in this folder: it needs"),
-        (["empty.mp4"], "empty.mp4: the file is empty: copy it again"),
-        (["notes.txt"], "notes.txt: cannot be read as a video or picture: check"),
-        (["broken.png"], "broken.png: not a whole picture"),
-        (["97"], "camera 97: does not open: check"),
         (["in", "--mapping", "rainbow"], "'rainbow': choose one of ternary, complement, contrast"),
         (["in", "--marker-colour", "bleu"], "--marker-colour is 'bleu': give \"#RRGGBB\""),
         (["in", "--dock", "navy.toml"], "navy.toml: colour is 'navy': give \"#RRGGBB\""),
@@ -287,11 +321,9 @@ def test_a_corrupt_picture_is_reported_skipped_and_counted(folder):
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
-def test_bad_input_is_refused_in_one_line_that_tells_the_mend(folder, arguments, says):
-    (folder / "empty").mkdir()
-    (folder / "empty.mp4").touch()
-    (folder / "notes.txt").write_text("the water was green today\n")
-    (folder / "broken.png").write_bytes((folder / "in" / "1.png").read_bytes()[:300])
+def test_a_bad_option_is_refused_in_one_line_that_tells_the_mend(
+    folder, detect_here, arguments, says
+):
     camera = CAMERA.format(width=640, height=480, f=500)
     (folder / "keys.yaml").write_text(camera.replace("camera_matrix", "K"))
     (folder / "singular.yaml").write_text(CAMERA.format(width=640, height=480, f=0))
@@ -305,7 +337,7 @@ def test_bad_input_is_refused_in_one_line_that_tells_the_mend(folder, arguments,
     before = listed(folder)
     if "--overlay" not in arguments:
         arguments = [*arguments, "--overlay", "out"]
-    done = detect(*arguments, "--json", cwd=folder)
+    done = detect_here(*arguments, "--json")
     refused(done, says)
     assert done.stdout == ""
     assert listed(folder) == before

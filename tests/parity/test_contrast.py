@@ -16,7 +16,8 @@ from generate import load_method
 from lit import to_linear
 
 from chromadock import method
-from chromadock.colour.marker import MAPPINGS, marker_hue
+from chromadock.choices import MAPPINGS
+from chromadock.colour.marker import marker_hue
 
 PHOTOGRAPHS = Path(__file__).resolve().parents[3] / "shared" / "data" / "transdec"
 MARKER = load_method()["marker"]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from comparison import assert_same, c_decision, numpy_decision
 
-from chromadock.colour.marker import MAPPINGS
+from chromadock.choices import MAPPINGS
 
 ROOT = Path(__file__).resolve().parents[2]
 PHOTOGRAPHS = ROOT.parent / "shared" / "data" / "transdec"
@@ -31,8 +31,10 @@ def random_frame(rng: np.random.Generator) -> np.ndarray:
         width, height = np.exp(rng.uniform(0, np.log(400), 2)).astype(int)
     flat = rng.integers(0, 256, 3)
     tilt = rng.normal(0, 80, 3) * np.linspace(-1, 1, height)[:, None, None]
-    noise = rng.choice([0, 4, 40, 300]) * (rng.random((height, width, 3), np.float32) - 0.5)
-    return np.clip(flat + tilt * rng.integers(2) + noise, 0, 255).astype(np.uint8)
+    strength = float(rng.choice([0, 4, 40, 300]))
+    frame = strength * (rng.random((height, width, 3), np.float32) - 0.5)
+    frame += flat + tilt * rng.integers(2)
+    return np.clip(frame, 0, 255, out=frame).astype(np.uint8)
 
 
 @pytest.mark.parametrize("batch", range(BATCHES))

@@ -9,9 +9,10 @@ import pytest
 from comparison import assert_same, c_decision, numpy_decision, of_hue
 
 from chromadock import method
+from chromadock.choices import MAPPINGS
 from chromadock.colour.background import background_colour
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
+from chromadock.colour.marker import RollingHue, marker_hue
 from chromadock_firmware import Dock, Settings, ffi, lib
 
 

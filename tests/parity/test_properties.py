@@ -7,8 +7,9 @@ from comparison import of_hue
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from chromadock.choices import MAPPINGS
 from chromadock.colour.hsv import hue_of_vector, rgb_from_hsv
-from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
+from chromadock.colour.marker import RollingHue, marker_hue
 from chromadock_firmware import ffi, lib
 
 HUE = st.integers(0, lib.METHOD_HUE_RANGE - 1)

@@ -1,4 +1,8 @@
-"""The ``chromadock`` command.  Each subcommand has a file of its own beside this one."""
+"""The ``chromadock`` command.  Each subcommand has a file of its own beside this one.
+
+These files import at their top only what the parser needs, and in the command itself what it
+runs: so ``--help`` and a mistyped option answer at once.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,6 @@ import io
 import os
 import signal
 import sys
-from importlib import metadata
 from types import FrameType
 from typing import Annotated, NoReturn
 
@@ -34,6 +37,7 @@ app = typer.Typer(
     help="Finds a docking station by the colour of its markers.",
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help: rich takes longer to load than all the rest
 )
 app.command("detect")(detect)
 app.command("demo")(demo)
@@ -44,6 +48,8 @@ app.add_typer(dock, name="dock")
 
 def _show_version(wanted: bool) -> None:
     if wanted:
+        from importlib import metadata
+
         try:
             version = metadata.version("chromadock")
         except metadata.PackageNotFoundError:

@@ -7,15 +7,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
-from rich.console import Console
-from rich.progress import track
-from rich.table import Table
 
 from chromadock.errors import ChromadockError
-from chromadock.output import JsonLines, open_overlay
-from chromadock.overlay import draw_overlay
 from chromadock.processors import processors
 
 if TYPE_CHECKING:
@@ -31,6 +25,13 @@ def demo(
     ),
 ) -> None:
     """Run dock and vehicle in simulated water: a blue pool, then a green lake."""
+    import numpy as np
+    from rich.console import Console
+    from rich.progress import track
+
+    from chromadock.output import JsonLines, open_overlay
+    from chromadock.overlay import draw_overlay
+
     try:
         from chromadock.demo.loop import COUNT, FRAME_RATE_HZ, run
         from chromadock.demo.overview import write_overview
@@ -71,6 +72,10 @@ def demo(
 
 def _print_table(records: Sequence[Record]) -> None:
     """Poses against the truth; simulated."""
+    import numpy as np
+    from rich.console import Console
+    from rich.table import Table
+
     table = Table(title="Hue of water and markers; pose against the truth (simulated)")
     for heading in ("time", "water", "dock", "vehicle", "range", "measured", "error", "attitude"):
         table.add_column(heading, justify="right", no_wrap=True)

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.live import Live
 
 from chromadock.cli.dock_flash import flash
 from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Log, Port, Timeout, connect
@@ -34,6 +32,8 @@ _ASK_AGAIN_S = 0.5
 @dock.command("info")
 def info(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD, log: Log = None) -> None:
     """Show the dock's version and what it sees, decides and shows now."""
+    from rich.console import Console
+
     from chromadock.cli.dock_status import table
 
     with connect(port, timeout, baud, log) as client:
@@ -56,6 +56,9 @@ def watch(
     ] = None,
 ) -> None:
     """Show the dock's state as it changes; a line a second where stdout is no terminal."""
+    from rich.console import Console
+    from rich.live import Live
+
     from chromadock.cli.dock_status import table
 
     console = Console(highlight=False)

@@ -6,8 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
 from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Port, Timeout, connect
 from chromadock.text import plural
@@ -22,6 +20,9 @@ Name = Annotated[str, typer.Argument(metavar="NAME", help="As in `params list`."
 @params.command("list")
 def list_all(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -> None:
     """Show all parameters with units, ranges and defaults."""
+    from rich.console import Console
+    from rich.table import Table
+
     from chromadock.link.values import TABLE, show, show_range
 
     with connect(port, timeout, baud) as dock:

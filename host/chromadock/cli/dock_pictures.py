@@ -5,13 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import cv2
 import typer
 
 from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Log, Port, Timeout, connect
 from chromadock.errors import ChromadockError
-from chromadock.output.base import cannot_write, partial_name
-from chromadock.sources import open_source
 
 
 def snapshot(
@@ -22,7 +19,10 @@ def snapshot(
     log: Log = None,
 ) -> None:
     """Fetch the dock camera's next frame."""
+    import cv2
+
     from chromadock.link.rgb565 import from_rgb565
+    from chromadock.output.base import cannot_write, partial_name
 
     if out.suffix.lower() != ".png":
         raise ChromadockError(f"{out}: the name must end in .png")
@@ -53,6 +53,7 @@ def inject(
     """Let the dock decide on these pictures instead of its camera's, and show what it says."""
     from chromadock.cli.dock_status import line
     from chromadock.link.rgb565 import HEIGHT, WIDTH, to_qqvga, to_rgb565
+    from chromadock.sources import open_source
 
     for source in frames:  # all of them, before anything is sent
         open_source(source).close()

@@ -5,22 +5,17 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import numpy as np
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 
 from chromadock.detection import Detection, Marker
 from chromadock.output import json_line
 from chromadock.sources import Frame
 from chromadock.text import plural
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 _LONG = 20
 """Sources with fewer frames are done before a bar could be read."""
@@ -139,6 +134,16 @@ class Report:
         if not sys.stderr.isatty() or (count is not None and count < _LONG):
             yield
             return
+        from rich.console import Console
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+
         columns = (
             TextColumn("detecting"), BarColumn(), MofNCompleteColumn(),
             TimeElapsedColumn(), TimeRemainingColumn(),

@@ -7,12 +7,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.progress import track
 
-from chromadock.detector import MAPPINGS
+from chromadock.choices import DEFAULT_MAPPING, MAPPINGS
 from chromadock.errors import ChromadockError
-from chromadock.method import DEFAULT_MAPPING_NAME
 from chromadock.processors import processors
 from chromadock.text import plural
 
@@ -54,7 +51,7 @@ def simulate(
     ] = None,
     mapping: Annotated[
         str, typer.Option(help=f"From water to marker colour: {', '.join(MAPPINGS)}.")
-    ] = DEFAULT_MAPPING_NAME,
+    ] = DEFAULT_MAPPING,
     set_: Annotated[
         list[str] | None,
         typer.Option(
@@ -73,6 +70,9 @@ def simulate(
     camera of its own.  Beside the frames stand truth.jsonl, a line a frame, and
     camera.yaml for `chromadock detect --camera`.
     """
+    from rich.console import Console
+    from rich.progress import track
+
     try:
         from chromadock.sim.photograph import Photographs
         from chromadock.sim.recording import open_recording

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock import method
+from chromadock import method, method_tables
 from chromadock.colour.hsv import hsv_from_rgb, hue_cos, hue_of_vector, hue_sin, rgb_from_hsv
 
 
@@ -106,6 +106,6 @@ def background_colour(
 def _resultant(x: int, y: int, mean_hue: int, chroma_sum: int) -> int:
     """Length of the mean hue vector over the mean chroma, by projection, 0..255."""
     quarter = method.HUE_RANGE // 4
-    along = x * int(method.SINE[mean_hue + quarter]) + y * int(method.SINE[mean_hue])
+    along = x * int(method_tables.SINE[mean_hue + quarter]) + y * int(method_tables.SINE[mean_hue])
     length = along // method.TRIG_UNIT**2
     return min(255, (510 * length + chroma_sum) // (2 * chroma_sum))

@@ -7,13 +7,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock import method
+from chromadock import method, method_tables
 
 # Steps a turn: the table that divides by chroma, and its fixed point.
 _HUE_SCALES = {
-    method.HUE_RANGE: (method.HUE_DIVISION, method.HUE_SHIFT),
-    180: (method.HUE_DIVISION_180, method.OPENCV_SHIFT),
-    256: (method.HUE_DIVISION_256, method.OPENCV_SHIFT),
+    method.HUE_RANGE: (method_tables.HUE_DIVISION, method.HUE_SHIFT),
+    180: (method_tables.HUE_DIVISION_180, method.OPENCV_SHIFT),
+    256: (method_tables.HUE_DIVISION_256, method.OPENCV_SHIFT),
 }
 
 
@@ -44,7 +44,7 @@ def hsv_from_rgb(
     hue = (distance * division[chroma] + (1 << (shift - 1))) >> shift
     hue = np.where(hue < 0, hue + hue_range, hue)
     half = 1 << (method.OPENCV_SHIFT - 1)
-    saturation = (chroma * method.SATURATION_DIVISION[value] + half) >> method.OPENCV_SHIFT
+    saturation = (chroma * method_tables.SATURATION_DIVISION[value] + half) >> method.OPENCV_SHIFT
     return hue, saturation, value, chroma
 
 
@@ -70,12 +70,12 @@ def rgb_from_hsv(hue: int, saturation: int, value: int) -> tuple[int, int, int]:
 
 def hue_cos(hue: NDArray[np.int32]) -> NDArray[np.int32]:
     """Cosine in units of ``method.TRIG_UNIT``; hue 0..1535."""
-    return method.SINE[hue + method.HUE_RANGE // 4]
+    return method_tables.SINE[hue + method.HUE_RANGE // 4]
 
 
 def hue_sin(hue: NDArray[np.int32]) -> NDArray[np.int32]:
     """Sine in units of ``method.TRIG_UNIT``; hue 0..1535."""
-    return method.SINE[hue]
+    return method_tables.SINE[hue]
 
 
 def hue_of_vector(x: int, y: int) -> int | None:
@@ -85,7 +85,7 @@ def hue_of_vector(x: int, y: int) -> int | None:
         return None
     while far >= 1 << 21:  # the C keeps near * ATAN_STEPS within 32 bits
         near, far = near >> 1, far >> 1
-    hue = int(method.ARCTANGENT[(near * method.ATAN_STEPS + far // 2) // far])
+    hue = int(method_tables.ARCTANGENT[(near * method.ATAN_STEPS + far // 2) // far])
     if abs(y) > abs(x):
         hue = method.HUE_RANGE // 4 - hue
     if x < 0:

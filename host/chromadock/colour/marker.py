@@ -6,11 +6,10 @@ from collections import deque
 
 import numpy as np
 
-from chromadock import method
+from chromadock import method, method_tables
+from chromadock.choices import MAPPINGS
 from chromadock.colour.background import BackgroundColour
 from chromadock.colour.hsv import hue_cos, hue_of_vector, hue_sin
-
-MAPPINGS: tuple[str, ...] = method.MAPPING_NAMES
 
 
 def marker_hue(
@@ -26,7 +25,7 @@ def marker_hue(
     step = method.MARKER_NODE_STEP
     node, beyond = divmod(background.hue, step)
     first = MAPPINGS.index(mapping) * (method.MARKER_NODES + 1) + node
-    here, there = method.MARKER_HUE[first : first + 2].tolist()
+    here, there = method_tables.MARKER_HUE[first : first + 2].tolist()
     hue: int = (here * (step - beyond) + there * beyond + step // 2) // step
     return hue % method.HUE_RANGE
 

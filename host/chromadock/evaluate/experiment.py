@@ -29,7 +29,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, field_validator
 
-from chromadock.colour.marker import MAPPINGS
+from chromadock.choices import MAPPINGS
 from chromadock.evaluate.filters import FILTERS
 from chromadock.toml_file import one_line_error, read_toml
 from chromadock.validation import allowed, between

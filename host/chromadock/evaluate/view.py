@@ -11,8 +11,9 @@ from cv2.typing import MatLike
 from numpy.typing import NDArray
 
 from chromadock import method
+from chromadock.choices import MAPPINGS
 from chromadock.colour.background import BackgroundColour, background_colour
-from chromadock.colour.marker import MAPPINGS, RollingHue, marker_hue
+from chromadock.colour.marker import RollingHue, marker_hue
 from chromadock.colour.working_image import smooth, working_image
 from chromadock.paper.mask import blurred_grey
 

@@ -13,6 +13,7 @@ has the share 1 - exp(-(c + kd d_z) s) of it.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ SUN_BLUR_RAD = 0.05
 """Waves spread the refracted sunlight by (1 - 1/n) times their slope, some tenths."""
 
 _SUN_NODES = 2048
-_SKY_NODES = 129
+_SKY_D_Z: Floats = np.linspace(-1, 1, 129)
 _AZIMUTHS = 72
 _ZENITHS = 48
 
@@ -78,8 +79,7 @@ class SunAndSky:
         level = np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros(_AZIMUTHS)])
         horizon = np.interp(np.sqrt(0.5 + 0.5 * level @ sun_direction), half_chord, table)
         self._sun = (table / horizon.mean()).astype(np.float32)
-        self._sky_d_z = np.linspace(-1, 1, _SKY_NODES)
-        self._sky = _sky_factor(phase, self._sky_d_z)
+        self._sky = _sky_factor(phase)
 
     def sun(self, directions: Image) -> Image:
         """(3, ...) directions of sight, world, to (...) the g of sunlight."""
@@ -92,11 +92,13 @@ class SunAndSky:
 
     def sky(self, d_z: Floats) -> Floats:
         """(...) downward components of directions of sight to (...) the g of skylight."""
-        return np.asarray(np.interp(d_z, self._sky_d_z, self._sky))
+        return np.asarray(np.interp(d_z, _SKY_D_Z, self._sky))
 
 
-def _sky_factor(phase: PhaseFunction, d_z: Floats) -> Floats:
-    """(n,) g of an evenly bright sky, whose light fills Snell's cone under water."""
+@cache  # it depends on nothing else, and a simulation has a source of light for each of its waters
+def _sky_factor(phase: PhaseFunction) -> Floats:
+    """(n,) g of an evenly bright sky, whose light fills Snell's cone, along ``_SKY_D_Z``."""
+    d_z = _SKY_D_Z
     critical = math.sqrt(1 - 1 / REFRACTIVE_INDEX**2)
     cosine = critical + (1 - critical) * (np.arange(_ZENITHS) + 0.5) / _ZENITHS
     sine = np.sqrt(1 - cosine**2)[:, None] * np.cos(_azimuths())

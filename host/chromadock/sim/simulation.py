@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.choices import MAPPINGS
 from chromadock.colour.hsv import degrees, rgb_from_hsv
-from chromadock.detector import MAPPINGS
 from chromadock.errors import ChromadockError
 from chromadock.link.rgb565 import to_rgb565
 from chromadock.marker_colour import MarkerColour

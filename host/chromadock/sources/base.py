@@ -11,8 +11,7 @@ from types import TracebackType
 import numpy as np
 from numpy.typing import NDArray
 
-DEFAULT_FPS = 30.0
-"""Frames a second of pictures, and of cameras and videos that do not tell."""
+from chromadock.choices import DEFAULT_FPS
 
 OnSkip = Callable[[str], None]
 """Takes one line about a picture that was skipped."""

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.sources.base import DEFAULT_FPS, Source
+from chromadock.choices import DEFAULT_FPS
+from chromadock.sources.base import Source
 
 
 class Capture(Source):

@@ -8,8 +8,9 @@ import re
 import stat
 from pathlib import Path
 
+from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import DEFAULT_FPS, OnSkip, Source, ignore
+from chromadock.sources.base import OnSkip, Source, ignore
 from chromadock.sources.live import open_camera, open_pipeline, open_url
 from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture, natural_key
 from chromadock.sources.video import open_video

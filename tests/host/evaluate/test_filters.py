@@ -8,7 +8,7 @@ import pytest
 from composites import CAMERA, DOCK, compose
 
 from chromadock import Detector
-from chromadock.colour.marker import MAPPINGS
+from chromadock.choices import MAPPINGS
 from chromadock.evaluate.filters import ADAPTIVE, MASKS, filter_mask
 from chromadock.evaluate.finders import Finders
 from chromadock.evaluate.tuned import Box, Tuned

@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 from chromadock import ChromadockError
-from chromadock.colour.marker import MAPPINGS
+from chromadock.choices import MAPPINGS
 from chromadock.evaluate import figures, filters, formats, style
 from chromadock.evaluate.frames import Evaluation
 from chromadock.evaluate.report import write_report

@@ -11,7 +11,7 @@ import pytest
 from small_scene import STILL, small_scene
 
 from chromadock import Detector
-from chromadock.detector import MAPPINGS
+from chromadock.choices import MAPPINGS
 from chromadock.errors import ChromadockError
 from chromadock.method import MIN_VALUE
 from chromadock.sim.scene import SHIPPED

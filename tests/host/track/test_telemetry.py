@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-from vehicle_truth import Yawing, followed, telemetry
+from vehicle_truth import Outcome, Yawing, followed, telemetry
 
 from chromadock import Attitude
 from chromadock.mounting import R_BODY_CAMERA_FORWARD as FORWARD
@@ -134,6 +135,17 @@ KINDS = {
 }
 
 
+def swaying(seed: int) -> Yawing:
+    """Yaw within 10 degrees in 4 s."""
+    return Yawing(10.0, 4.0, 1.3 * seed)
+
+
+@cache
+def without_attitude(seed: int) -> Outcome:
+    """What every kind of telemetry is compared with."""
+    return followed(swaying(seed), 30, 6.0, None, seed)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_telemetry_however_slow_never_makes_the_prediction_worse(
     kind: str, record_property: Any
@@ -143,9 +155,9 @@ def test_telemetry_however_slow_never_makes_the_prediction_worse(
     rate_hz, step_deg = KINDS[kind]
     covered, with_it, without = [], [], []
     for seed in range(2):
-        vehicle = Yawing(10.0, 4.0, 1.3 * seed)
+        vehicle = swaying(seed)
         told = followed(vehicle, 30, 6.0, telemetry(vehicle, rate_hz, step_deg), seed)
-        alone = followed(vehicle, 30, 6.0, None, seed)
+        alone = without_attitude(seed)
         assert told.tracked.all() and alone.tracked.all()
         covered.append(told.covered)
         with_it.append(told.predicted_off_m)

@@ -1,0 +1,87 @@
+"""What ``chromadock detect`` does with each frame of a source."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+
+from chromadock.camera import CameraModel
+from chromadock.cli.report import Report
+from chromadock.detector import Detector
+from chromadock.dock import DockGeometry
+from chromadock.errors import ChromadockError
+from chromadock.output import OverlayOutput, open_overlay
+from chromadock.overlay import draw_overlay
+from chromadock.sources import Frame, Source, open_source
+
+EXIT_SKIPPED = 1
+EXIT_INTERRUPTED = 130
+
+
+def detect_frames(
+    source: str,
+    fps: float,
+    detector: Detector,
+    model: CameraModel | None,
+    geometry: DockGeometry,
+    overlay: Path | None,
+    report: Report,
+) -> int:
+    """Look for the dock in all frames of ``source``, tell ``report``; the exit status."""
+    with ExitStack() as stack:
+        frames = stack.enter_context(open_source(source, fps, report.skipped))
+        pictures = None
+        if overlay is not None:
+            _check_apart(overlay, frames)
+            pictures = stack.enter_context(open_overlay(overlay, frames.count, frames.fps))
+        stack.enter_context(report.progress(frames.count))
+        interrupted = _run(frames, detector, model, geometry, pictures, report)
+    report.summary()
+    if interrupted:
+        return EXIT_INTERRUPTED
+    return EXIT_SKIPPED if frames.errors else 0
+
+
+def _check_apart(overlay: Path, frames: Source) -> None:
+    """An overlay named like its picture, in the picture's folder, would replace it."""
+    if overlay.resolve() in {place.resolve() for place in frames.places}:
+        raise ChromadockError(f"--overlay {overlay} would overwrite the source: choose another")
+
+
+def _run(
+    frames: Source,
+    detector: Detector,
+    model: CameraModel | None,
+    geometry: DockGeometry,
+    pictures: OverlayOutput | None,
+    report: Report,
+) -> bool:
+    """Frame after frame; True where Ctrl-C ended a live source, which is its only end."""
+    try:
+        for frame in frames:
+            _one(frame, detector, model, geometry, pictures, report)
+    except KeyboardInterrupt:
+        if not frames.live:
+            raise
+        return True
+    return False
+
+
+def _one(
+    frame: Frame,
+    detector: Detector,
+    model: CameraModel | None,
+    geometry: DockGeometry,
+    pictures: OverlayOutput | None,
+    report: Report,
+) -> None:
+    try:
+        detection = detector.process(frame.image, frame.time_s)
+    except ChromadockError as error:
+        raise ChromadockError(f"{frame.name}: {error}") from None
+    if pictures is not None:
+        height, width = frame.image.shape[:2]
+        camera = model or CameraModel.nominal(width, height)
+        drawn = draw_overlay(frame.image, detector.mask, detection, camera, geometry)
+        pictures.write(drawn, frame.name, frame.index)
+    report.frame(frame, detection)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +49,19 @@ class Constellation:
     doubt: float = 0.0
 
 
-def doubt(poses: tuple[Estimate, ...], weights: NDArray[np.float64]) -> float:
+class Placed(Protocol):
+    """What has a place and says how well it is known."""
+
+    @property
+    def t(self) -> NDArray[np.float64]:
+        """(3,) metres, in the camera frame."""
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """(N, N), N at least 3: first of the place, metres squared."""
+
+
+def doubt(poses: Sequence[Placed], weights: Sequence[float]) -> float:
     """Probability that the dock is not where the first of its poses has it.
 
     Each pose, by its weight, puts the dock at its own range, known to a normal error; elsewhere
@@ -56,7 +70,7 @@ def doubt(poses: tuple[Estimate, ...], weights: NDArray[np.float64]) -> float:
     told = poses[0].t
     tolerance = PLACE_TOLERANCE * float(np.linalg.norm(told))
     wrong = 0.0
-    for pose, weight in zip(poses, weights.tolist(), strict=True):
+    for pose, weight in zip(poses, weights, strict=True):
         sight = pose.t / np.linalg.norm(pose.t)
         sigma = math.sqrt(max(float(sight @ pose.covariance[:3, :3] @ sight), 1e-18))
         off = float(np.linalg.norm(pose.t - told))

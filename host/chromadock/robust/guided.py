@@ -67,7 +67,12 @@ def guided(
 
     most = max(1, int(_MAX_CHOICES ** (1 / count)))
     options: list[list[int]] = []
+    size = np.array([camera.width, camera.height])
     for marker in range(count):
+        # What shines at the border is not a marker that is beyond it, but what is left of its halo.
+        if not ((expected[marker] > 0) & (expected[marker] < size - 1)).all():
+            options.append([])
+            continue
         off = peaks.xy - expected[marker]
         own = covariance[2 * marker : 2 * marker + 2, 2 * marker : 2 * marker + 2]
         square = (off @ np.linalg.inv(own) * off).sum(axis=1)

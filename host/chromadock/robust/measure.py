@@ -120,7 +120,9 @@ class Measure:
         if not self._all_belong(candidate, sighting, wide[0]):
             return None
         markers = np.arange(len(self.view.points))
-        return Constellation(markers, xy[k], evidence, wide, doubt(wide, placed.weights[order]))
+        return Constellation(
+            markers, xy[k], evidence, wide, doubt(wide, placed.weights[order].tolist())
+        )
 
     def _all_belong(self, candidate: Candidate, sighting: Sighting, pose: Estimate) -> bool:
         """Whether each marker is likelier where it was taken to be than hidden, with a peak of
@@ -164,7 +166,7 @@ class Measure:
         again = (refined_pose(sighting, poses[k].R, poses[k].t) or poses[k] for k in order)
         poses = tuple(widened(sighting, pose) for pose in again)
         # About a track's pose the track says how sure the place is.
-        unsure = 0.0 if priors else doubt(poses, placed.weights[order])
+        unsure = 0.0 if priors else doubt(poses, placed.weights[order].tolist())
         return Constellation(guess.markers, xy, guess.evidence, poses, unsure)
 
     def _refined(

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.pose import same_rotation
+from chromadock.robust.acceptance import doubt
 from chromadock.track.fusion import Fused, with_attitude, with_markers, with_turn_rate
 from chromadock.track.motion import POSE, State, met, turn_between
 from chromadock.track.sight import Sight
@@ -72,6 +73,12 @@ class Bank:
         return _bank(
             [_Branch(met(p.R, p.t, p.covariance), -p.chi_square / 2, False) for p in sight.poses]
         )
+
+    @property
+    def doubt(self) -> float:
+        """Probability that the place of the dock's origin is off by more than 5 % of its range."""
+        states = [h.state for h in self.hypotheses]
+        return doubt(states, [h.weight for h in self.hypotheses])
 
     def about(self, origin: Floats) -> Bank:
         """The same by a dock frame with its origin at ``origin`` (3,), metres, dock frame."""

@@ -12,7 +12,7 @@ from chromadock.track.bank import Bank
 from chromadock.track.candidate import Candidate
 from chromadock.track.manoeuvre import SELDOM, later
 from chromadock.track.result import Track
-from chromadock.track.states import KEPT_S, state_of
+from chromadock.track.states import KEPT_S, MOST_DOUBT_KEPT, state_of
 from chromadock.track.telemetry import UNHEARD, Telemetry
 
 Floats = NDArray[np.float64]
@@ -20,7 +20,8 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Locked:
-    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not.
+    """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not, with
+    ``evidence`` in decades; ``sure``: whether its place has been known well enough to tell a pose.
 
     ``swift`` 0..1: probability that the vehicle manoeuvres.
     """
@@ -29,6 +30,8 @@ class Locked:
     time_s: float
     measured_s: float
     whole: bool
+    evidence: float
+    sure: bool
     swift: float = SELDOM
 
     def after(self, elapsed_s: float) -> Bank:
@@ -76,5 +79,8 @@ class Memory:
         )
         if locked is None or state not in ("tracking", "recently_lost"):
             return Track(state, time_s, age_s=age_s)
-        bank = locked.after(time_s - locked.time_s).about(origin)
-        return Track.following(state, time_s, bank.hypotheses, time_s - locked.measured_s)
+        bank = locked.after(time_s - locked.time_s)
+        if not locked.sure or bank.doubt > MOST_DOUBT_KEPT:
+            return Track("acquiring" if state == "tracking" else state, time_s, age_s=age_s)
+        hypotheses = bank.about(origin).hypotheses
+        return Track.following(state, time_s, hypotheses, time_s - locked.measured_s)

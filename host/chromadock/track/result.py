@@ -41,8 +41,9 @@ class TrackedPose:
 class Track:
     """The dock at ``time_s``, by the frames up to it.
 
-    ``state``: one of ``states.STATES``.  ``pose``: only while the dock is tracked or recently lost,
-    else None; ``alternative``: the next likeliest, until the data have decided.  ``velocity``
+    ``state``: one of ``states.STATES``.  ``pose``: while the dock is tracked, and after that for
+    as long as its place is known well enough (``states.MOST_DOUBT_KEPT``), else None;
+    ``alternative``: the next likeliest, until the data have decided.  ``velocity``
     m/s and ``turn_rate`` rad/s: of the dock as seen by a camera that does not turn, and of the
     camera, both in camera axes.  ``age_s``: since the dock was last measured; None before it was.
     """

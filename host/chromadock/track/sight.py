@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
@@ -15,6 +16,13 @@ from chromadock.robust.guided import MIN_MARKERS
 FLOOR_PX = 0.2
 """Of a marker's error, however bright it is: a colour camera samples red and blue at every other
 pixel, and a good calibration leaves 0.1 to 0.3 pixels."""
+
+SAME_PLACE = 0.2
+"""Of the distance from where a marker is expected to where another is: nearer to that one it
+stands where the other does."""
+
+MIN_OTHERS = 2
+"""One marker may move to another's place by chance."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -65,6 +73,20 @@ class Sight:
         """Whether it is all of the dock, or so much that it says as much as all of four markers:
         three places fit anywhere in several ways, more of them do not."""
         return self.whole or len(self.markers.pixels) > MIN_MARKERS
+
+    def misnamed(self, dock: DockGeometry, R: NDArray[np.float64], t: NDArray[np.float64]) -> bool:
+        """Whether markers stand where others of the dock are by a pose (3, 3), (3,).
+
+        So does a row of lamps that is taken for the dock with one lamp more at its end: no motion
+        of the vehicle moves a dock by just the distance of its markers.
+        """
+        own = projected(self.markers.points_dock, R, t, self.markers.camera)
+        every = projected(dock.points, R, t, self.markers.camera)
+        if own is None or every is None:
+            return False
+        apart = np.linalg.norm(own[0][:, None] - every[0], axis=2)
+        off = np.linalg.norm(self.markers.pixels[:, None] - every[0], axis=2)
+        return bool(np.count_nonzero((off < SAME_PLACE * apart).any(axis=1)) >= MIN_OTHERS)
 
     def worth(self, share: float) -> Sight:
         """The same with ``share`` 0..1 of its information."""

@@ -20,7 +20,7 @@ from chromadock.track.motion import turning_of
 from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.result import Track
 from chromadock.track.sight import Sight
-from chromadock.track.states import TRACKING_S
+from chromadock.track.states import MOST_DOUBT, TRACKING_S
 
 KEEP_EVIDENCE = 2.5
 """Decades, of markers where the track has them: specks there would draw it away, and a frame
@@ -109,7 +109,7 @@ class Tracker:
         evidence = found.evidence or 0.0
         if sight is not None:
             memory = replace(memory, last_markers=found.markers)
-            after = _followed(memory, predicted, sight, evidence, time_s, plan)
+            after = self._followed(memory, predicted, sight, evidence, time_s, plan)
         memory = after or _unseen(memory, predicted, time_s)
         if sight is not None and after is None and plan.everywhere:
             memory = _proposed(memory, sight, evidence, time_s)
@@ -150,6 +150,45 @@ class Tracker:
 
         swift = later(locked.swift, elapsed_s)
         return Prediction(locked, predicted, swift, time_s if faced else memory.faced_s)
+
+    def _followed(
+        self,
+        memory: Memory,
+        predicted: Prediction | None,
+        sight: Sight,
+        evidence: float,
+        time_s: float,
+        plan: Plan,
+    ) -> Memory | None:
+        """After the locked dock was measured; None where it was not.
+
+        One out of sight may be anywhere soon, and three markers of four leave open where the
+        fourth would be: what is found then must speak for itself.
+        """
+        if predicted is None:
+            return None
+        locked = predicted.locked
+        unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
+        if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
+            return None
+        if evidence < locked.evidence:
+            first = predicted.bank(0.0).hypotheses[0].state
+            if sight.misnamed(self._dock, first.R, first.t):
+                return None
+        new = sight.worth(_share(sight, time_s - locked.measured_s))
+        after = decided(predicted.bank, new, predicted.swift)
+        if after is None:
+            return None
+        bank, swift = after[0].doubting(sight), after[1]
+        sure = locked.sure or bank.doubt <= MOST_DOUBT
+        return replace(
+            memory,
+            locked=Locked(bank, time_s, time_s, sight.whole, evidence, sure, swift),
+            last_seen_s=time_s,
+            faced_s=predicted.faced_s,
+            # What stands out most is this dock: others are none.
+            candidates=() if plan.everywhere else memory.candidates,
+        )
 
     def _sight(self, memory: Memory, plan: Plan, found: Found, camera: CameraModel) -> Sight | None:
         """The frame's markers; none of a picture that has been seen already.
@@ -202,40 +241,6 @@ def _unseen(memory: Memory, predicted: Prediction | None, time_s: float) -> Memo
     return replace(memory, locked=locked, faced_s=predicted.faced_s)
 
 
-def _followed(
-    memory: Memory,
-    predicted: Prediction | None,
-    sight: Sight,
-    evidence: float,
-    time_s: float,
-    plan: Plan,
-) -> Memory | None:
-    """After the locked dock was measured; None where it was not.
-
-    One out of sight may be anywhere soon, and three markers of four leave open where the
-    fourth would be: what is found then must speak for itself.
-    """
-    if predicted is None:
-        return None
-    locked = predicted.locked
-    unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
-    if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
-        return None
-    new = sight.worth(_share(sight, time_s - locked.measured_s))
-    after = decided(predicted.bank, new, predicted.swift)
-    if after is None:
-        return None
-    bank, swift = after
-    return replace(
-        memory,
-        locked=Locked(bank.doubting(sight), time_s, time_s, sight.whole, swift),
-        last_seen_s=time_s,
-        faced_s=predicted.faced_s,
-        # What stands out most is this dock: others are none.
-        candidates=() if plan.everywhere else memory.candidates,
-    )
-
-
 def _proposed(memory: Memory, sight: Sight, evidence: float, time_s: float) -> Memory:
     """With a dock where none is locked: a new candidate, one more frame of one, or the lock."""
     candidates = list(memory.candidates)
@@ -252,9 +257,10 @@ def _proposed(memory: Memory, sight: Sight, evidence: float, time_s: float) -> M
     rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
     if not after.locked(rival):
         return replace(memory, candidates=tuple(candidates))
+    sure = after.bank.doubt <= MOST_DOUBT
     return replace(
         memory,
-        locked=Locked(after.bank, time_s, time_s, sight.whole),
+        locked=Locked(after.bank, time_s, time_s, sight.whole, evidence, sure),
         last_seen_s=time_s,
         faced_s=-np.inf,
         candidates=(),

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -67,3 +69,14 @@ def test_the_less_sure_the_pose_the_less_the_same_peaks_say() -> None:
 def test_a_pose_behind_the_camera_expects_nothing() -> None:
     behind = Estimate(R, -T, 0.0, 0.0, SURE)
     assert guided(POINTS, behind, peaks(shown=[0, 1, 2, 3], specks=0), 1.0, CAMERA) is None
+
+
+def test_a_speck_at_the_border_is_no_marker_that_is_beyond_it() -> None:
+    """Two markers to the right are out of the picture; two specks at its edge stand in for them."""
+    beyond = replace(PRIOR, t=np.array([2.05, -0.1, 3.0]))
+    places = CAMERA.project(POINTS @ R.T + beyond.t)
+    outside = places[:, 0] > 639
+    assert outside.sum() == 2
+    shown = np.where(outside[:, None], np.column_stack([np.full(4, 637.0), places[:, 1]]), places)
+    four = replace(peaks(shown=[0, 1, 2, 3], specks=0), xy=shown)
+    assert guided(POINTS, beyond, four, 1.0, CAMERA) is None

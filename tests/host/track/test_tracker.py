@@ -13,7 +13,7 @@ from track_truth import CAMERA, DOCK, NOTHING, Pose, approach, found, rotation
 
 from chromadock import Attitude, ChromadockError, DockGeometry, Track, Tracker
 from chromadock.look import Found
-from chromadock.pose import lever
+from chromadock.pose import Sighting, estimates, lever
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.track.candidate import (
     GIVEN_UP_S,
@@ -26,6 +26,7 @@ from chromadock.track.candidate import (
 from chromadock.track.plan import FULL_SEARCH_S, MAX_PRIORS, Plan
 from chromadock.track.states import KEPT_S, STATES, TRACKING_S, state_of
 from chromadock.track.tracker import KEEP_EVIDENCE
+from chromadock.variety.docks import dock_geometry
 
 HZ = 10
 Seen = Callable[[float, Plan], Found]
@@ -406,3 +407,37 @@ def test_whatever_comes_at_whatever_time_the_track_is_sound(
             assert 0 < track.pose.weight <= 1
             spread = np.array(track.pose.covariance).reshape(6, 6)
             assert np.linalg.eigvalsh(spread).min() > 0
+
+
+def test_a_row_of_lamps_with_one_more_at_its_end_does_not_move_the_dock() -> None:
+    """A dock of four lamps in line, of which the last three and a stranger look just like it."""
+    line = dock_geometry("line", 0.9)
+    tracker, rng = Tracker(line), np.random.default_rng(1)
+    t = np.array([-0.4, 0.1, 4.0])
+
+    def look(time_s: float, place: np.ndarray, evidence: float) -> Track:
+        xy = CAMERA.project(line.points + place) + rng.normal(0, 0.01, (4, 2))
+        poses = estimates(Sighting(line.points, xy, np.full(4, 0.3), CAMERA))
+        places = {n: (float(u), float(v)) for n, (u, v) in zip(line.names, xy, strict=True)}
+        what = Found("found", 0.0, (), places, poses[0].pose(), poses, evidence)
+        plan = replace(tracker.plan(time_s), priors=(), everywhere=True)
+        return tracker.update(time_s, plan, what, CAMERA)
+
+    tracks = [look(k / HZ, t, 20.0) for k in range(12)]
+    assert tracks[-1].pose is not None
+    after = look(1.2, t + np.array([0.3, 0.0, 0.0]), 8.0)
+    assert after.pose is not None
+    assert np.linalg.norm(np.subtract(after.pose.t, t)) < 0.1
+
+
+def test_a_dock_whose_range_is_not_known_yet_is_locked_without_a_pose() -> None:
+    """Locked from afar, where a tenth of a pixel is several per cent of the range."""
+    run = Run()
+    far = rotation(0, 0, 0), np.array([0.2, 0.1, 30.0])
+    states = [run.frame(lambda t, p: found(far, run.rng)).state for _ in range(8)]
+    assert states[-1] == "acquiring"
+    assert run.tracker.at(run.time_s).pose is None
+    near = rotation(0, 12, 0), np.array([0.2, 0.1, 3.0])
+    run = Run()
+    states = [run.frame(lambda t, p: found(near, run.rng)).state for _ in range(8)]
+    assert states[-1] == "tracking"

@@ -22,6 +22,9 @@ and the surround of that."""
 WIDTH_PER_SPACING = 0.12
 """At most, of the distance between the closest markers, so that a neighbour's light hardly
 pulls."""
+COARSE_WIDTH_PER_SPACING = 0.24
+"""The same of lamps that were found in cells wider than FINE_CELL: these are large themselves, and
+where they are overexposed a narrower smoothing has its top at the plateau's rim."""
 ROOMY = 2.0
 """Markers with so many times the room of the closest ones, as those out of the others' plane, are
 looked at for themselves; the rest alike, by the closest."""
@@ -188,7 +191,8 @@ def _patches(
 ) -> list[_Patch]:
     """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker."""
     reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
-    widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], WIDTH_PER_SPACING * spacing)]
+    widest = (WIDTH_PER_SPACING if step == 1 else COARSE_WIDTH_PER_SPACING) * spacing
+    widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], widest)]
     middle = int(reach + widths[-1]) + 1
     around = middle + int(CUT_OFF * SURROUND * widths[-1])
     side = 2 * around + 1

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 
 from chromadock import CameraModel, DockGeometry
+from chromadock.geometry.pose import Sighting, estimates
 from chromadock.look import Found
-from chromadock.pose import Sighting, estimates
 from chromadock.track.candidate import LOCK_EVIDENCE
 from chromadock.track.sight import Sight
 

@@ -11,8 +11,8 @@ from track_truth import CAMERA, DOCK, NOTHING, Pose, found, rotation
 
 from chromadock import Attitude, Tracker
 from chromadock.mounting import R_BODY_CAMERA_FORWARD
+from chromadock.results.track import TrackedPose
 from chromadock.rotation import matrix_from_quaternion
-from chromadock.track.result import TrackedPose
 
 IN_95_PERCENT = 12.59  # chi-square with six degrees of freedom
 PREDICTED_S = 0.15

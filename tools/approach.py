@@ -20,12 +20,12 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from chromadock import Detector, Track
 from chromadock.processors import processors
+from chromadock.results.track import TrackedPose
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.sim.scene import Scene, load_scene
 from chromadock.sim.simulation import Simulation
 from chromadock.sim.truth import Truth
 from chromadock.toml_file import one_line_error, read_toml
-from chromadock.track.result import TrackedPose
 
 SCENARIOS = Path(__file__).resolve().parents[1] / "experiments" / "approach" / "scenarios.toml"
 

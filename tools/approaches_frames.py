@@ -9,9 +9,9 @@ from limit import standing_out
 from recall_trials import NEAR_PX, NEAR_SHARE, PLACE_SHARE
 
 from chromadock import Detection
+from chromadock.results.track import TrackedPose
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.track.motion import turn_between
-from chromadock.track.result import TrackedPose
 from chromadock.variety import Moment, Truth
 from chromadock.variety.docks import ORIGINAL_WIDTH_M, matched
 

@@ -4,7 +4,7 @@
     [--only TABLE ...] [--write]
 
 The rectangle and docs/five_marker_dock.toml, each at the same poses.  First by geometry alone:
-projected markers with normal errors, and both poses of ``chromadock.pose.estimates``: at the
+projected markers with normal errors, and both poses of ``geometry.pose.estimates``: at the
 poses of the composites, and straight ahead, where a plane tells its yaw worst.  Then with
 markers composited on the photographs of ../shared/data (tests/robust_composites.py), through
 the robust detector.  All of it is simulated.  --write puts the tables into the page.
@@ -28,8 +28,8 @@ from recall_old import COVERED, NEAR_PX, PHOTOGRAPHS, backgrounds
 from robust_composites import ATTITUDE_DEG, CAMERA, compose, pose_in_view, read
 
 from chromadock import Detector, DockGeometry
-from chromadock.pose import Estimate, Sighting, estimates
-from chromadock.profile import widened
+from chromadock.geometry.pose import Estimate, Sighting, estimates
+from chromadock.geometry.profile import widened
 
 PAGE = ROOT / "docs" / "geometry.md"
 FIVE = ROOT / "docs" / "five_marker_dock.toml"

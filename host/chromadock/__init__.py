@@ -22,13 +22,13 @@ __all__ = [
 
 if TYPE_CHECKING:  # for type checkers and editors; Python itself goes by the function below
     from chromadock.camera import CameraModel
-    from chromadock.detection import Detection
     from chromadock.detector import Detector
     from chromadock.dock import DockGeometry
     from chromadock.errors import ChromadockError
     from chromadock.mounting import Mounting
+    from chromadock.results.detection import Detection
+    from chromadock.results.track import Track
     from chromadock.track.attitude import Attitude
-    from chromadock.track.result import Track
     from chromadock.track.tracker import Tracker
 else:
     from importlib import import_module
@@ -37,11 +37,11 @@ else:
         "Attitude": "track.attitude",
         "CameraModel": "camera",
         "ChromadockError": "errors",
-        "Detection": "detection",
+        "Detection": "results.detection",
         "Detector": "detector",
         "DockGeometry": "dock",
         "Mounting": "mounting",
-        "Track": "track.result",
+        "Track": "results.track",
         "Tracker": "track.tracker",
     }
 

@@ -24,17 +24,17 @@ from chromadock.colour.background import BackgroundColour, background_colour
 from chromadock.colour.hsv import degrees, nearest_hue
 from chromadock.colour.marker import RollingHue, marker_hue, observed_colour
 from chromadock.colour.working_image import smooth, working_image
-from chromadock.detection import Background, Detection, Marker
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.look import Look, Method
 from chromadock.marker_colour import MarkerColour
 from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.paper.method import PaperMethod
+from chromadock.results.detection import Background, Detection, Marker
+from chromadock.results.track import Track
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
 from chromadock.track.attitude import Attitude, expected_if_told
-from chromadock.track.result import Track
 from chromadock.track.tracker import Tracker
 
 _METHODS: dict[str, Callable[[DockGeometry], Method]] = {
@@ -203,7 +203,6 @@ class Detector:
             markers=found.markers,
             pose=found.pose,
             evidence=found.evidence,
-            estimates=found.estimates,
             track=track,
             clipped=found.clipped,
             misfit=found.misfit,

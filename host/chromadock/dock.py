@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from chromadock.errors import ChromadockError
+from chromadock.geometry.symmetry import Symmetry, symmetries
 from chromadock.marker_colour import WANTED, MarkerColour
-from chromadock.symmetry import Symmetry, symmetries
 from chromadock.toml_file import read_toml
 from chromadock.validation import place, shown
 

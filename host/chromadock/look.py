@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from chromadock.camera import CameraModel
 from chromadock.colour.background import BackgroundColour
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.detection import RGB, Blob, Misfit, Point, Pose
+from chromadock.geometry.pose import Estimate
 from chromadock.marker_colour import ColourKind
-from chromadock.pose import Estimate
+from chromadock.results.detection import RGB, Blob, Misfit, Point
+from chromadock.results.pose import Pose
 from chromadock.stopwatch import Stopwatch
 
 

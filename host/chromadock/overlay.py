@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from chromadock import draw
 from chromadock.camera import CameraModel
-from chromadock.detection import Blob, Detection, Pose
 from chromadock.dock import DockGeometry
 from chromadock.draw import BLUE, DIM, GREEN, INK, PAPER, RED, Canvas
+from chromadock.results.detection import Blob, Detection
+from chromadock.results.pose import Pose
+from chromadock.results.track import Track, TrackedPose
 from chromadock.rotation import matrix_from_quaternion
-from chromadock.track.result import Track, TrackedPose
 
 _GAP = 4
 _MIN_PANEL = (320, 90)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from chromadock import DockGeometry
-from chromadock.pose import Estimate
+from chromadock.geometry.pose import Estimate
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 NEEDS_PHOTOGRAPHS = pytest.mark.skipif(

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from chromadock.camera import CameraModel
-from chromadock.detection import Background, Blob, Detection, Marker, Pose
 from chromadock.dock import DockGeometry
 from chromadock.draw import GREEN, RED, pure_rgb
 from chromadock.overlay import draw_overlay
+from chromadock.results.detection import Background, Blob, Detection, Marker
+from chromadock.results.pose import Pose
+from chromadock.results.track import Track, TrackedPose
 from chromadock.rotation import matrix_from_quaternion
-from chromadock.track.result import Track, TrackedPose
 
 WATER = (31, 160, 201)
 MARKER = (255, 0, 191)

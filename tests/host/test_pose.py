@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.pose import Estimate, Sighting, epnp, estimates, refined
+from chromadock.geometry.pose import Estimate, Sighting, epnp, estimates, refined
 from chromadock.rotation import matrix_from_quaternion, quaternion_from_matrix
 
 CAMERA = CameraModel.nominal(640, 480)

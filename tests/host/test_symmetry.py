@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from chromadock import DockGeometry
-from chromadock.symmetry import symmetries
+from chromadock.geometry.symmetry import symmetries
 
 FIVE = Path(__file__).resolve().parents[2] / "docs" / "five_marker_dock.toml"
 RECTANGLE = DockGeometry.default().points

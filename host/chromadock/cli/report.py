@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from chromadock.detection import Detection, Marker
 from chromadock.output import json_line
+from chromadock.results.detection import Detection, Marker
 from chromadock.sources import Frame
 from chromadock.text import plural
 

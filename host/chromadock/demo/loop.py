@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.detection import Detection
 from chromadock.detector import Detector
+from chromadock.results.detection import Detection
 from chromadock.sim.renderer import Frame
 from chromadock.sim.scene import Scene, load_scene
 from chromadock.sim.simulation import Simulation, Step

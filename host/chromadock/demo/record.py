@@ -9,8 +9,8 @@ import numpy as np
 
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.demo.loop import Moment
-from chromadock.detection import Detection
 from chromadock.method import HUE_RANGE
+from chromadock.results.detection import Detection
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.sim.truth import Truth
 

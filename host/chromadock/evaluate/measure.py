@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.detection import Pose
 from chromadock.evaluate.target import Target
 from chromadock.look import Found
+from chromadock.results.pose import Pose
 from chromadock.robust.acceptance import PLACE_TOLERANCE
 from chromadock.rotation import matrix_from_quaternion
 

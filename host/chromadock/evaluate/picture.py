@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.colour.hsv import degrees, hsv_from_rgb
-from chromadock.detection import RGB, Blob
 from chromadock.draw import GREEN, RED, Canvas, pure_rgb
+from chromadock.results.detection import RGB, Blob
 
 _QUALITY = 90
 

@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.colour.marker import observed_colour
-from chromadock.detection import Blob
 from chromadock.dock import DockGeometry
+from chromadock.geometry.pose import epnp
 from chromadock.look import Found, Look
 from chromadock.paper.blobs import find_spots
 from chromadock.paper.constellation import CORNERS, Rectangle, corners, four_blobs, right_triangles
 from chromadock.paper.mask import colour_mask, foreground
 from chromadock.paper.peaks import Spot
-from chromadock.pose import epnp
+from chromadock.results.detection import Blob
 from chromadock.stopwatch import Stopwatch
 
 

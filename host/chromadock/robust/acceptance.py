@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.pose import Estimate
+from chromadock.geometry.pose import Estimate
 
 FALSE_ALARM_RATE = 10**-4.5
 """Bound on the share of frames of Poisson clutter in which any set of peaks is taken for the

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.pose import Estimate, projected
+from chromadock.geometry.pose import Estimate, projected
 from chromadock.robust.evidence import evidence_of_sets, placed_along
 from chromadock.robust.peaks import Peaks
 

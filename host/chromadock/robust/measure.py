@@ -9,10 +9,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.detection import Misfit
-from chromadock.pose import Estimate, Sighting, estimates, projected, same_rotation
-from chromadock.pose import refined as refined_pose
-from chromadock.profile import widened
+from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, same_rotation
+from chromadock.geometry.pose import refined as refined_pose
+from chromadock.geometry.profile import widened
+from chromadock.results.detection import Misfit
 from chromadock.robust.acceptance import LEAST_EVIDENCE, LEAST_FOR_A_TRACK, Constellation, doubt
 from chromadock.robust.guided import HIDDEN, Guess, guided
 from chromadock.robust.peaks import Peaks

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.detection import Blob
 from chromadock.dock import DockGeometry
 from chromadock.look import Found, Look
+from chromadock.results.detection import Blob
 from chromadock.robust.acceptance import MOST_DOUBT, Constellation
 from chromadock.robust.measure import Measure
 from chromadock.robust.peaks import MIN_SNR, Peaks, find_peaks

@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.pose import Estimate, Sighting, projected
+from chromadock.geometry.pose import Estimate, Sighting, projected
 
 Real = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.pose import same_rotation
+from chromadock.geometry.pose import same_rotation
 from chromadock.robust.acceptance import doubt
 from chromadock.track.fusion import Fused, with_attitude, with_markers, with_turn_rate
 from chromadock.track.motion import POSE, State, met, turn_between

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.pose import Sighting, projected
+from chromadock.geometry.pose import Sighting, projected
 from chromadock.track.motion import ATTITUDE, POSE, RATE, State, rotation, turn_between
 
 Floats = NDArray[np.float64]

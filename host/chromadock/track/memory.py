@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.results.track import Track
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import Candidate
 from chromadock.track.manoeuvre import SELDOM, later
-from chromadock.track.result import Track
 from chromadock.track.states import KEPT_S, MOST_DOUBT_KEPT, state_of
 from chromadock.track.telemetry import UNHEARD, Telemetry
+from chromadock.track.told import following
 
 Floats = NDArray[np.float64]
 
@@ -83,4 +84,4 @@ class Memory:
         if not locked.sure or bank.doubt > MOST_DOUBT_KEPT:
             return Track("acquiring" if state == "tracking" else state, time_s, age_s=age_s)
         hypotheses = bank.about(origin).hypotheses
-        return Track.following(state, time_s, hypotheses, time_s - locked.measured_s)
+        return following(state, time_s, hypotheses, time_s - locked.measured_s)

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.pose import lever
+from chromadock.geometry.pose import lever
 
 Floats = NDArray[np.float64]
 

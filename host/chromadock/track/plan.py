@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.pose import Estimate
+from chromadock.geometry.pose import Estimate
 from chromadock.track.bank import Bank
 from chromadock.track.memory import Memory
 from chromadock.track.motion import POSE

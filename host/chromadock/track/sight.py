@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
-from chromadock.pose import Estimate, Sighting, projected
+from chromadock.geometry.pose import Estimate, Sighting, projected
 from chromadock.robust.guided import MIN_MARKERS
 
 FLOOR_PX = 0.2

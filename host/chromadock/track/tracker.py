@@ -11,6 +11,7 @@ from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
 from chromadock.look import Found
 from chromadock.mounting import Mounting, mounting_or_default
+from chromadock.results.track import Track
 from chromadock.track.attitude import Attitude, expected, expected_if_told
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
@@ -18,7 +19,6 @@ from chromadock.track.manoeuvre import decided, later
 from chromadock.track.memory import Locked, Memory
 from chromadock.track.motion import turning_of
 from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
-from chromadock.track.result import Track
 from chromadock.track.sight import Sight
 from chromadock.track.states import MOST_DOUBT, TRACKING_S
 

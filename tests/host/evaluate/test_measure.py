@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from chromadock.detection import Pose
 from chromadock.evaluate.measure import hue_difference_deg, measured
 from chromadock.evaluate.target import Target
 from chromadock.look import Found
+from chromadock.results.pose import Pose
 from chromadock.rotation import quaternion_from_matrix
 
 NAMES = ("a", "b", "c", "d")

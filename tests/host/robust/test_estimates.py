@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.pose import Estimate, Sighting, estimates, projected, refined
+from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, refined
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points

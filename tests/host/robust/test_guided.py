@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.pose import Estimate
+from chromadock.geometry.pose import Estimate
 from chromadock.robust.guided import guided
 from chromadock.robust.peaks import Peaks
 

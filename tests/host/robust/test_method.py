@@ -12,8 +12,8 @@ from chromadock import CameraModel, DockGeometry
 from chromadock.colour.background import background_colour
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.working_image import smooth, working_image
+from chromadock.geometry.pose import Estimate
 from chromadock.look import Found, Look
-from chromadock.pose import Estimate
 from chromadock.robust.method import RobustMethod
 from chromadock.stopwatch import Stopwatch
 

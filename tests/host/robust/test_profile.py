@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.pose import Estimate, Sighting, estimates
-from chromadock.profile import widened
+from chromadock.geometry.pose import Estimate, Sighting, estimates
+from chromadock.geometry.profile import widened
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points

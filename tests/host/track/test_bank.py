@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from track_truth import CAMERA, DOCK, Course, Pose, pixels, rotation, sight
 
+from chromadock.geometry.pose import Sighting, estimates, refined
 from chromadock.mounting import Mounting
-from chromadock.pose import Sighting, estimates, refined
 from chromadock.track.attitude import Attitude, expected
 from chromadock.track.bank import FORGOTTEN, MAX_HYPOTHESES, Bank
 from chromadock.track.motion import turn_between

@@ -7,7 +7,7 @@ import pytest
 from robust_composites import CAMERA
 from track_truth import rotation
 
-from chromadock.pose import Sighting, estimates
+from chromadock.geometry.pose import Sighting, estimates
 from chromadock.track.candidate import LOCK_EVIDENCE, LOCK_FRAMES, Candidate
 from chromadock.track.sight import Sight
 from chromadock.variety.docks import dock_geometry

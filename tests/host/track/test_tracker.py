@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from track_truth import CAMERA, DOCK, NOTHING, Pose, approach, found, rotation
 
 from chromadock import Attitude, ChromadockError, DockGeometry, Track, Tracker
+from chromadock.geometry.pose import Sighting, estimates, lever
 from chromadock.look import Found
-from chromadock.pose import Sighting, estimates, lever
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.track.candidate import (
     GIVEN_UP_S,

@@ -15,10 +15,10 @@ from approaches_runs import run_row, still_trial
 from approaches_tables import MISSES, by_run, in_sum, of_no_dock
 
 from chromadock import Detection, Track
-from chromadock.detection import Background, Marker
+from chromadock.results.detection import Background, Marker
+from chromadock.results.track import TrackedPose
 from chromadock.rotation import quaternion_from_matrix
 from chromadock.track.motion import rotation
-from chromadock.track.result import TrackedPose
 from chromadock.variety import Backdrops, Moment, Scene, approach, draw, render
 from chromadock.variety.docks import ORIGINAL_WIDTH_M, dock_geometry
 

@@ -10,7 +10,8 @@ from recall_tables import by_distance, by_factors
 from recall_trials import judged
 
 from chromadock import Detection
-from chromadock.detection import Background, Marker, Pose
+from chromadock.results.detection import Background, Marker
+from chromadock.results.pose import Pose
 from chromadock.variety import Backdrops, Truth, draw, render
 from chromadock.variety.docks import matched
 

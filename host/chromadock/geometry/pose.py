@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.detection import Pose
+from chromadock.results.pose import Pose
 from chromadock.rotation import quaternion_from_matrix
 
 _MAX_ROUNDS = 100  # most take five; along the flat valley of a far plane it is slow

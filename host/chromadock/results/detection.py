@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from chromadock.pose import Estimate
-    from chromadock.track.result import Track, TrackedPose
+from chromadock.results.pose import Pose
+from chromadock.results.track import Track, TrackedPose
 
 RGB = tuple[int, int, int]
 Point = tuple[float, float]
@@ -55,25 +54,6 @@ class Blob:
 
 
 @dataclass(frozen=True, slots=True)
-class Pose:
-    """``T_camera_dock``: the dock in the camera frame (OpenCV: x right, y down, z forward).
-
-    ``t`` in metres; ``q_wxyz`` a unit quaternion that turns dock axes into camera
-    axes; ``reprojection_px`` the root mean square distance of the reprojected
-    markers from the measured ones.  ``covariance``: 6 x 6 by rows, of x, y, z, metres, and of
-    turns about the camera's x, y and z axes, radians, as in ROS's PoseWithCovariance; None
-    where a method does not know it.  ``alternative``: the other pose that the markers leave
-    open, if they do.
-    """
-
-    t: tuple[float, float, float]
-    q_wxyz: tuple[float, float, float, float]
-    reprojection_px: float
-    alternative: Pose | None = None
-    covariance: tuple[float, ...] | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class Misfit:
     """Something that stands like a dock but is none as the dock's file has it.
 
@@ -89,7 +69,7 @@ class Misfit:
 class Detection:
     """Everything one frame told.  Fields that do not apply are None.
 
-    ``state``, ``evidence`` and ``estimates``: see ``look.Found``; ``passed_fraction`` the
+    ``state`` and ``evidence``: see ``look.Found``; ``passed_fraction`` the
     share of pixels that stand out in the markers' colour, 0..1; ``observed`` the RGB, 0..255,
     that the camera should see of a marker, None where that may be any; ``markers`` maps the
     dock's marker names to their pixel; ``track`` what all frames so far tell, at this one's time
@@ -105,7 +85,6 @@ class Detection:
     markers: dict[str, Point] | None = None
     pose: Pose | None = None
     evidence: float | None = None
-    estimates: tuple[Estimate, ...] = ()
     track: Track | None = None
     clipped: float | None = None
     misfit: Misfit | None = None

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.pose import Estimate, Sighting
+from chromadock.geometry.pose import Estimate, Sighting
 
 _WELL_KNOWN_RAD = 0.015
 """Standard deviation of a turn below which second order is far below first."""

@@ -1,0 +1,58 @@
+"""Imports of the host run one way: from results to the detector, and in no circle."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import chromadock
+
+ROOT = Path(chromadock.__file__).parent
+ORDER = ("results", "geometry", "robust", "track", "detector")
+"""Each may import those before it, and none after it."""
+
+
+def imported(body: list[ast.stmt]) -> Iterator[str]:
+    """Modules named by the imports of statements; not of functions, which run later."""
+    for statement in body:
+        if isinstance(statement, ast.ImportFrom) and statement.module:
+            yield from (f"{statement.module}.{alias.name}" for alias in statement.names)
+        elif isinstance(statement, ast.Import):
+            yield from (alias.name for alias in statement.names)
+        elif isinstance(statement, ast.If | ast.Try):
+            yield from imported([*statement.body, *statement.orelse])
+
+
+def graph() -> dict[str, set[str]]:
+    """Parts of the package, a folder or a file directly in it, and the parts that each imports,
+    for type checkers too."""
+    parts: dict[str, set[str]] = {}
+    for path in sorted(ROOT.rglob("*.py")):
+        part = path.relative_to(ROOT).parts[0].removesuffix(".py")
+        names = [n.split(".") for n in imported(ast.parse(path.read_text("utf-8")).body)]
+        others = {n[1] for n in names if n[0] == "chromadock" and len(n) > 1} - {part}
+        parts.setdefault(part, set()).update(others)
+    # The package's own file names for type checkers what others find there.
+    del parts["__init__"]
+    return {part: others & parts.keys() for part, others in parts.items()}
+
+
+def test_no_part_imports_itself_by_way_of_others() -> None:
+    try:
+        TopologicalSorter(graph()).prepare()
+    except CycleError as error:
+        raise AssertionError(" -> ".join(error.args[1])) from None
+
+
+def test_the_layers_of_the_detector_import_downwards_only() -> None:
+    parts = graph()
+    for k, layer in enumerate(ORDER):
+        seen, waiting = set[str](), [layer]
+        while waiting:
+            part = waiting.pop()
+            if part not in seen:
+                seen.add(part)
+                waiting += parts[part]
+        assert not seen.intersection(ORDER[k + 1 :]), layer

@@ -20,8 +20,8 @@ import cv2
 import numpy as np
 from step import ROOT
 
-from chromadock import Detector
 from chromadock.colour.marker import marker_hue
+from chromadock.colour.vehicle import vehicle_background
 from chromadock.method import HUE_RANGE
 from chromadock.robust.likeness import FILE, design
 from chromadock.robust.peaks import find_peaks
@@ -59,7 +59,7 @@ def scene_sample(index: int, backdrops: Backdrops) -> Sample:
     distance = distances[index % len(distances)]
     scene = draw(index, Half.DEVELOP.seed(5), backdrops, distance=distance)
     frame, truth = render(scene)
-    hue = marker_hue(Detector._background(frame), scene.mapping)
+    hue = marker_hue(vehicle_background(frame), scene.mapping)
     every = find_peaks(respond(frame, hue, focal_px(truth.camera)))
     others = {thing.kind for thing in scene.things} & {"lamp"}
     parts = []

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,10 +19,10 @@ from chromadock.choices import (
     MAPPINGS,
     METHODS,
 )
-from chromadock.colour.background import BackgroundColour, background_colour
+from chromadock.colour.background import BackgroundColour
 from chromadock.colour.hsv import degrees, nearest_hue
 from chromadock.colour.marker import RollingHue, marker_hue, observed_colour
-from chromadock.colour.working_image import smooth, working_image
+from chromadock.colour.vehicle import vehicle_background
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.look import Look, Method
@@ -159,7 +158,7 @@ class Detector:
         camera.check_size(frame_bgr.shape)
         watch = Stopwatch()
 
-        background = self._background(frame_bgr)
+        background = vehicle_background(frame_bgr)
         hue = self._expected_hue(background, time_s)
         kind = "hue" if self._given is None else self._given.kind
         look = Look(frame_bgr, background, hue, camera, colour=kind)
@@ -215,12 +214,6 @@ class Detector:
             return self._given.hue
         hue = marker_hue(background, self._mapping, self._fallback_hue)
         return hue if self._rolling is None else self._rolling.add(hue, round(time_s * 1000))
-
-    @staticmethod
-    def _background(frame_bgr: NDArray[np.uint8]) -> BackgroundColour:
-        working_rgb = cv2.cvtColor(working_image(frame_bgr), cv2.COLOR_BGR2RGB)
-        smoothed = smooth(np.asarray(working_rgb, np.uint8))
-        return background_colour(smoothed, contract.MIN_VALUE_VEHICLE)
 
 
 # One for all frames of a size: what a method prepares for a camera, it need not prepare again.

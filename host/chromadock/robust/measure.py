@@ -17,6 +17,7 @@ from chromadock.robust.acceptance import LEAST_EVIDENCE, LEAST_FOR_A_TRACK, Cons
 from chromadock.robust.guided import HIDDEN, Guess, guided
 from chromadock.robust.peaks import Peaks
 from chromadock.robust.placement import PosePrior, placement
+from chromadock.robust.plateau import on_one_thing
 from chromadock.robust.refine import Tops, refined
 from chromadock.robust.response import Response
 from chromadock.robust.twin import is_image_of
@@ -101,6 +102,8 @@ class Measure:
         xy, sigma = _choices(tops)
         likely = self.view.log_shape(xy, sigma, self.upright) if len(xy) > 1 else np.zeros(1)
         k = int(likely.argmax())
+        if on_one_thing(self.frame_bgr, xy[k]):
+            return None
         sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera)
         poses = estimates(sighting)
         if not poses:

@@ -29,7 +29,11 @@ ATTITUDE_RAD = np.radians([10.0, 20.0, 10.0])
 to the dock swims level and about along its axis."""
 
 MIN_SPACING_CELLS = 2.0
-"""Of the closest markers of the farthest dock of interest, in finest cells, which do not touch."""
+"""Of the closest markers that are searched for at a scale, in its cells, which do not touch."""
+
+FINEST_SPACING_CELLS = 3.0
+"""The same at the finest scale, and of the farthest dock of interest: the lens merges what is
+closer, and the strokes of a recorder's letters are 5 pixels apart."""
 
 FACETS = 5
 """Ways to look at a dock: along its axis, and from the left, the right, above and below.  Seen
@@ -199,7 +203,7 @@ def _views(points: Real, camera: CameraModel) -> tuple[Complex, NDArray[np.intp]
     apart = np.linalg.norm(points[:, None] - points[None], axis=2)
     nearest = float(apart.max() / np.linalg.norm(high - low))
     farthest = focal_px(camera) * float(apart[apart > 0].min())
-    farthest /= MIN_SPACING_CELLS * finest_cell(camera.width, camera.height)
+    farthest /= FINEST_SPACING_CELLS * finest_cell(camera.width, camera.height)
     # Even in log range; a camera too coarse for this dock still gets views at twice the nearest.
     ranges = nearest * max(farthest / nearest, 2.0) ** rng.random(_VIEWS)
     rays = np.column_stack([rng.uniform(low, high, (_VIEWS, 2)), np.ones(_VIEWS)])

@@ -13,11 +13,13 @@ from chromadock.camera import CameraModel
 from chromadock.robust.acceptance import HOPEFUL
 from chromadock.robust.evidence import evidence_of_sets, placed_along
 from chromadock.robust.incomplete import Incomplete
+from chromadock.robust.layout import finest_cell
 from chromadock.robust.peaks import Peaks
 from chromadock.robust.placement import PosePrior
 from chromadock.robust.search import Search
 from chromadock.robust.shape import (
     ATTITUDE_RAD,
+    FINEST_SPACING_CELLS,
     MIN_SPACING_CELLS,
     Complex,
     ShapeModel,
@@ -107,7 +109,8 @@ class View:
         ``upright``: a unit complex number that turns the picture to where the dock stands upright.
         """
         if cell not in self._searches:
-            apart_px = MIN_SPACING_CELLS * cell  # so that cells do not touch
+            finest = cell == finest_cell(self.camera.width, self.camera.height)
+            apart_px = cell * (FINEST_SPACING_CELLS if finest else MIN_SPACING_CELLS)
             self._searches[cell] = Search(self.model, PEAK_ERROR * cell, self.area, apart_px)
         z = ideal(peaks.xy, self.camera) * upright
         found = self._searches[cell].find(z, peaks, HOPEFUL)

@@ -8,7 +8,7 @@ from search_reference import inside
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.robust.layout import finest_cell
-from chromadock.robust.shape import FACETS, MIN_SPACING_CELLS, ShapeModel, ideal
+from chromadock.robust.shape import FACETS, FINEST_SPACING_CELLS, ShapeModel, ideal
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points
@@ -122,7 +122,7 @@ def test_places_do_not_depend_on_the_lens() -> None:
 def test_the_farthest_views_have_markers_in_cells_that_do_not_touch() -> None:
     model = ShapeModel.learn(RECTANGLE, CAMERA)
     """The window leaves room for those that are turned away."""
-    apart = MIN_SPACING_CELLS * finest_cell(640, 480)
+    apart = FINEST_SPACING_CELLS * finest_cell(640, 480)
     assert 0.7 * apart < model.side.shortest < apart
 
 

@@ -1,0 +1,41 @@
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from chromadock.robust.plateau import on_one_thing
+
+FAR = [(300.0, 100.0), (300.0, 130.0)]
+
+
+def frame(lamps: list[tuple[float, float]], radius: float) -> np.ndarray:
+    """Green lamps so bright that they clip: green first, then blue, red at the core alone."""
+    y, x = np.mgrid[:240, :400].astype(np.float32)
+    light = np.full((240, 400, 3), 20.0, np.float32)
+    for u, v in lamps:
+        shine = np.exp(-0.5 * ((x - u) ** 2 + (y - v) ** 2) / radius**2)
+        light += shine[..., None] * np.array([420, 2000, 300], np.float32)
+    return np.clip(light, 0, 255).astype(np.uint8)
+
+
+def test_two_places_on_one_overexposed_lamp_are_found_out() -> None:
+    seen = frame([(100.0, 100.0), *FAR], 12.0)
+    assert on_one_thing(seen, np.array([(97.0, 98.0), (103.0, 103.0), *FAR]))
+
+
+def test_two_lamps_whose_light_runs_into_each_other_are_two() -> None:
+    close = [(100.0, 100.0), (100.0, 130.0)]
+    seen = frame([*close, *FAR], 10.0)
+    assert seen[100:131, 100, 1].min() == 255
+    assert not on_one_thing(seen, np.array([*close, *FAR]))
+
+
+def test_a_bar_of_light_is_one_lamp() -> None:
+    seen = np.full((240, 400, 3), 30, np.uint8)
+    cv2.line(seen, (80, 60), (320, 60), (255, 255, 255), 9)
+    assert on_one_thing(seen, np.array([(100.0, 60.0), (200.0, 60.0), (300.0, 60.0)]))
+
+
+def test_lamps_that_do_not_clip_are_not_asked() -> None:
+    seen = np.full((240, 400, 3), 240, np.uint8)
+    assert not on_one_thing(seen, np.array([(100.0, 60.0), (110.0, 60.0), (300.0, 60.0)]))

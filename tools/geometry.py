@@ -22,6 +22,7 @@ from functools import cache, partial
 import cv2
 import numpy as np
 from step import ROOT
+from told import told_poses
 
 sys.path.insert(0, str(ROOT / "tests"))
 from recall_old import COVERED, NEAR_PX, PHOTOGRAPHS, backgrounds
@@ -122,7 +123,7 @@ def on_photograph(name: str, range_m: float, index: int, seed: int) -> Errors | 
     places = [seen.markers[marker] for marker in dock(name).names]
     if np.linalg.norm(places - scene.pixels, axis=1).max() >= NEAR_PX:
         return None
-    return errors(seen.estimates, scene.R, scene.t)
+    return errors(told_poses(seen), scene.R, scene.t)
 
 
 def random(seed: int, range_m: float, *index: int) -> np.random.Generator:

@@ -22,6 +22,7 @@ import cv2
 import numpy as np
 from limit import standing_out
 from step import ROOT
+from told import told_poses
 
 sys.path.insert(0, str(ROOT / "tests"))
 from robust_composites import CAMERA, DOCK, compose, read
@@ -95,7 +96,7 @@ def trial(method: str, range_m: float, seed: int, index: int) -> Trial:
 
 def _covered(seen: Detection, R: np.ndarray, t: np.ndarray) -> bool | None:
     """Whether the truth lies in the region of either pose; None without a covariance."""
-    poses = getattr(seen, "estimates", ())
+    poses = told_poses(seen)
     return bool(min(pose.distance(R, t) for pose in poses) < COVERED) if poses else None
 
 

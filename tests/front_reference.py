@@ -1,5 +1,5 @@
 """The front end of the robust detector in numpy and OpenCV, step by step: what
-``host/native/front.c`` is held against.
+``host/native/front.h`` is held against.
 
 It is written for being read, and is ten times as slow.  The tuned numbers that ``front.h`` does
 not have stand here a second time: a test that took them from what it tests would miss a slip.

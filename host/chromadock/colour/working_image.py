@@ -47,7 +47,7 @@ def working_image(
         ffi.from_buffer("uint16_t[]", np.empty(3 * width, np.uint16)),
         ffi.from_buffer("uint32_t[]", sums),
     )
-    count = np.outer(*(_pixels(*each) for each in zip(pixels.shape, sums.shape[:2], strict=False)))
+    count = np.outer(_pixels(height, method.WORKING_HEIGHT), _pixels(width, method.WORKING_WIDTH))
     full = np.asarray(scale, dtype=np.float64) * count[..., None]
     # Exact: no quotient of integers below 2^53 rounds up to a whole number.
     return np.asarray((510 * sums.astype(np.float64) + full) / (2 * full)).astype(np.uint8)

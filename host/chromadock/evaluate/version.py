@@ -12,7 +12,7 @@ from pathlib import Path
 import chromadock
 import chromadock_firmware
 
-_PACKAGES = ("colour", "link", "paper", "robust", "sim", "track")
+_PACKAGES = ("colour", "geometry", "link", "paper", "results", "robust", "sim", "track")
 _MODULES = (
     *("filters", "finders", "measure", "picture", "plan", "runs", "target"),
     *("tuned", "tuning", "tuning_frames", "view", "work"),

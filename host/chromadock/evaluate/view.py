@@ -10,11 +10,10 @@ import numpy as np
 from cv2.typing import MatLike
 from numpy.typing import NDArray
 
-from chromadock import method
 from chromadock.choices import MAPPINGS
-from chromadock.colour.background import BackgroundColour, background_colour
+from chromadock.colour.background import BackgroundColour
 from chromadock.colour.marker import RollingHue, marker_hue
-from chromadock.colour.working_image import smooth, working_image
+from chromadock.colour.vehicle import vehicle_background
 from chromadock.paper.mask import blurred_grey
 
 
@@ -43,8 +42,7 @@ class Vehicle:
         self, frame_bgr: NDArray[np.uint8], time_s: float
     ) -> tuple[BackgroundColour, dict[str, int]]:
         """Water's colour and rolling mean of the marker's hue, as ``Detector`` finds them."""
-        small_rgb = np.ascontiguousarray(working_image(frame_bgr)[..., ::-1])
-        background = background_colour(smooth(small_rgb), method.MIN_VALUE_VEHICLE)
+        background = vehicle_background(frame_bgr)
         now_ms = round(time_s * 1000)
         hues = {
             mapping: rolling.add(marker_hue(background, mapping), now_ms)

@@ -5,7 +5,7 @@ whether a ridge goes on to both sides, how much light there is about it, whether
 to a stronger peak, and how much light it takes away in some channel.  Two logistic regressions
 give it (the ratio of posterior odds with what is seen to those by strength and scale alone is the
 ratio of densities); ``tools/fit_likeness.py`` fits them to scenes of all kinds.  What is seen and
-what the regressions are told of it is computed in ``host/native/front.c``.
+what the regressions are told of it is computed in ``host/native/peaks.c``.
 """
 
 from __future__ import annotations

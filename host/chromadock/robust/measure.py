@@ -159,6 +159,9 @@ class Measure:
         places = found if guess.expected is None else guess.expected
         nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
         xy, sigma = (np.array(values) for values in zip(*nearest, strict=True))
+        # Where a track has the dock its lamps may be so near that they run into each other.
+        if not priors and on_one_thing(self.frame_bgr, xy):
+            return None
         sighting = Sighting(self.view.points[guess.markers], xy, sigma, self.view.camera)
         poses = _downhill(sighting, priors) if priors else estimates(sighting)
         if not poses:

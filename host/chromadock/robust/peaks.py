@@ -13,7 +13,7 @@ from chromadock.robust.native import ffi, lib, pointer
 from chromadock.robust.response import Response
 
 MIN_SNR: float = lib.FRONT_MIN_SNR
-"""At the finest scale; as much more at a coarser scale as its cells are wider."""
+"""At the two finest scales; as much more at a coarser one as its cells are wider."""
 
 MAX_PEAKS: int = lib.FRONT_MAX_PEAKS
 """The strongest of each scale are kept, so that any frame takes bounded time."""

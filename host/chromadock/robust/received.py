@@ -68,6 +68,6 @@ def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | 
     whitened = np.linalg.solve(response.covariance, _PURE.T.astype(np.float64))
     answer = (added @ whitened) / np.sqrt((_PURE.T * whitened).sum(axis=0))
     best = int(answer.argmax())
-    # The noise of cells of the finest scale; that of coarser ones is no more.
+    # The noise of cells of the second scale; that of coarser ones is no more.
     sure = whole.all() or answer[best] >= _LEAST_SNR * np.count_nonzero(whole)
     return int(_HUES[best]) if sure else None

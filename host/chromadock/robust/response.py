@@ -35,9 +35,10 @@ class Response:
     """What the matched filters make of a frame.
 
     ``weights`` (HUES, 3) float32, BGR: the filters, that of the expected hue first, such that
-    finest cells fluctuate by about 1; ``axes`` (3, 3), BGR: the matched filter of white, and two
-    filters blind to white, all of which fluctuate as much, each for itself; ``covariance``
-    (3, 3), BGR: of the fluctuation of cells, in linear light.
+    cells of the second scale fluctuate by about 1; ``axes`` (3, 3), BGR: the matched filter of
+    white, and two filters blind to white, all of which fluctuate as much, each for itself;
+    ``covariance`` (3, 3), BGR: of the fluctuation of those cells, in linear light.  The finest
+    scale is seen through the first filter alone.
 
     In images of all scales, see ``layout``: ``light`` (3, H, W) float32: linear BGR, 0..1;
     ``added`` (3, H, W) float32: the same less that of the surround; ``snr`` (H, W) float32: the

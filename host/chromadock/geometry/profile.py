@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.geometry.many import errors, rotation_vectors, rotations
 from chromadock.geometry.pose import Estimate, Sighting
 
 _WELL_KNOWN_RAD = 0.015
@@ -62,50 +62,20 @@ def _profile(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Steps (M, 6) away and chi-square (M,) after turns by ``angles`` (M,) about ``axes``
     (M, 3), units, all else refitted."""
-    R = _rotations(angles[:, None] * axes) @ estimate.R
+    R = rotations(angles[:, None] * axes) @ estimate.R
     t = np.tile(estimate.t, (len(angles), 1))
     # Along the axis a refit must not turn: there it is held as by a very good measurement.
     held = np.zeros((len(angles), 6, 6))
     held[:, 3:, 3:] = axes[:, :, None] * axes[:, None, :]
     for _ in range(_ROUNDS):
-        error, jacobian = _errors(sighting, R, t)
+        error, jacobian = errors(sighting, R, t)
         normal = jacobian.transpose(0, 2, 1) @ jacobian
         trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
         gradient = jacobian.transpose(0, 2, 1) @ error[..., None]
         damped = normal + trace * (_STIFFNESS * held + _DAMPING * np.eye(6))
         step = -np.linalg.solve(damped, gradient)[..., 0]
         t = t + step[:, :3]
-        R = _rotations(step[:, 3:]) @ R
-    error, _ = _errors(sighting, R, t)
-    turned = [cv2.Rodrigues(r @ estimate.R.T)[0].ravel() for r in R]
+        R = rotations(step[:, 3:]) @ R
+    error, _ = errors(sighting, R, t)
+    turned = rotation_vectors(R @ estimate.R.T)
     return np.column_stack([t - estimate.t, turned]), (error**2).sum(axis=1)
-
-
-def _errors(
-    sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Errors (M, 2N) in standard deviations and their derivatives (M, 2N, 6) at M poses."""
-    count, zero = len(R), np.zeros(3)
-    arms = np.einsum("mij,nj->mni", R, sighting.points_dock)
-    seen = arms + t[:, None]
-    seen[..., 2] = np.maximum(seen[..., 2], 1e-3)
-    camera = sighting.camera
-    pixels, derivatives = cv2.projectPoints(
-        seen.reshape(-1, 3), zero, zero, camera.matrix, camera.distortion
-    )
-    by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(count, -1, 2, 3)
-    by_turn = np.cross(arms[:, :, None, :], by_place)
-    both = np.concatenate([by_place, by_turn], axis=3) / sighting.sigma_px[:, None, None]
-    off = (np.asarray(pixels).reshape(count, -1, 2) - sighting.pixels) / sighting.sigma_px[:, None]
-    return off.reshape(count, -1), both.reshape(count, -1, 6)
-
-
-def _rotations(turns: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(M, 3, 3) rotations by (M, 3) turns: Rodrigues' formula."""
-    angle = np.linalg.norm(turns, axis=1)[:, None, None] + 1e-12
-    x, y, z = turns.T
-    zero = np.zeros_like(x)
-    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
-    by_sine = np.sin(angle) / angle * cross
-    by_cosine = (1 - np.cos(angle)) / angle**2 * (cross @ cross)
-    return np.asarray(np.eye(3) + by_sine + by_cosine)

@@ -30,8 +30,11 @@ no more docks, and measuring is the dearest step."""
 PLACE_TOLERANCE = 0.05
 """Of the range: a pose whose place is farther off is wrong."""
 
-MOST_DOUBT = 0.15
+MOST_DOUBT = 0.1
 """Probability that a pose is wrong, beyond which it is not told."""
+
+NO_DOUBT = 0.02
+"""Probability, by the normal errors of its poses, below which that is good enough to go by."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -64,21 +67,32 @@ class Placed(Protocol):
 def doubt(poses: Sequence[Placed], weights: Sequence[float]) -> float:
     """Probability that the dock is not where the first of its poses has it.
 
-    Each pose, by its weight, puts the dock at its own range, known to a normal error; elsewhere
-    than within PLACE_TOLERANCE of the first one's place that is wrong.
+    Each pose, by its weight, puts the dock at its own range, known to a normal error.
     """
-    told = poses[0].t
+    t = np.array([pose.t for pose in poses])
+    sight = t / np.linalg.norm(t, axis=1, keepdims=True)
+    place = np.array([pose.covariance[:3, :3] for pose in poses])
+    sigma = np.sqrt(np.maximum(np.einsum("mi,mij,mj->m", sight, place, sight), 1e-18))
+    return share_beyond(t[0], t, sigma, np.asarray(weights))
+
+
+def share_beyond(
+    told: NDArray[np.float64],
+    t: NDArray[np.float64],
+    sigma: NDArray[np.float64],
+    weights: NDArray[np.float64],
+) -> float:
+    """Of poses at (M, 3), with ranges known to (M,) and (M,) weights that sum to 1: the share
+    that is elsewhere than within PLACE_TOLERANCE of ``told`` (3,)."""
     tolerance = PLACE_TOLERANCE * float(np.linalg.norm(told))
-    wrong = 0.0
-    for pose, weight in zip(poses, weights, strict=True):
-        sight = pose.t / np.linalg.norm(pose.t)
-        sigma = math.sqrt(max(float(sight @ pose.covariance[:3, :3] @ sight), 1e-18))
-        off = float(np.linalg.norm(pose.t - told))
-        within = _normal((tolerance - off) / sigma) - _normal((-tolerance - off) / sigma)
-        wrong += weight * (1 - within)
-    return wrong
+    off = np.linalg.norm(t - told, axis=1)
+    within = _normal((tolerance - off) / sigma) - _normal((-tolerance - off) / sigma)
+    return float(weights @ (1 - within))
 
 
-def _normal(z: float) -> float:
+_erf = np.vectorize(math.erf, otypes=[np.float64])
+
+
+def _normal(z: NDArray[np.float64]) -> NDArray[np.float64]:
     """Share of a normal distribution below z standard deviations."""
-    return 0.5 * math.erfc(-z / math.sqrt(2))
+    return np.asarray(0.5 + 0.5 * _erf(z / math.sqrt(2)))

@@ -13,13 +13,20 @@ from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, s
 from chromadock.geometry.pose import refined as refined_pose
 from chromadock.geometry.profile import widened
 from chromadock.results.detection import Misfit
-from chromadock.robust.acceptance import LEAST_EVIDENCE, LEAST_FOR_A_TRACK, Constellation, doubt
+from chromadock.robust.acceptance import (
+    LEAST_EVIDENCE,
+    LEAST_FOR_A_TRACK,
+    NO_DOUBT,
+    Constellation,
+    doubt,
+)
 from chromadock.robust.guided import HIDDEN, Guess, guided
 from chromadock.robust.peaks import Peaks
 from chromadock.robust.placement import PosePrior, placement
 from chromadock.robust.plateau import on_one_thing
 from chromadock.robust.refine import Tops, refined
 from chromadock.robust.response import Response
+from chromadock.robust.tilts import doubt_over_tilts
 from chromadock.robust.twin import is_image_of
 from chromadock.robust.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
 
@@ -123,9 +130,8 @@ class Measure:
         if not self._all_belong(candidate, sighting, wide[0]):
             return None
         markers = np.arange(len(self.view.points))
-        return Constellation(
-            markers, xy[k], evidence, wide, doubt(wide, placed.weights[order].tolist())
-        )
+        unsure = self._doubt(sighting, wide, placed.weights[order])
+        return Constellation(markers, xy[k], evidence, wide, unsure)
 
     def _all_belong(self, candidate: Candidate, sighting: Sighting, pose: Estimate) -> bool:
         """Whether each marker is likelier where it was taken to be than hidden, with a peak of
@@ -141,6 +147,16 @@ class Measure:
             candidate.looks + place - candidate.looks_without(marker, self.view.along) > hidden
             for marker, place in enumerate(places.tolist())
         )
+
+    def _doubt(
+        self, sighting: Sighting, poses: tuple[Estimate, ...], weights: NDArray[np.float64]
+    ) -> float:
+        """Probability that the place of the first of the poses is wrong."""
+        roughly = doubt(poses, weights.tolist())
+        if roughly < NO_DOUBT:
+            return roughly
+        finely = doubt_over_tilts(sighting, poses[0], self.prior)
+        return roughly if finely is None else finely
 
     def _note(self, evidence: float, error_px: float) -> None:
         """What stood like a dock by the search's natural log of evidence, but does not fit."""
@@ -172,7 +188,7 @@ class Measure:
         again = (refined_pose(sighting, poses[k].R, poses[k].t) or poses[k] for k in order)
         poses = tuple(widened(sighting, pose) for pose in again)
         # About a track's pose the track says how sure the place is.
-        unsure = 0.0 if priors else doubt(poses, placed.weights[order].tolist())
+        unsure = 0.0 if priors else self._doubt(sighting, poses, placed.weights[order])
         return Constellation(guess.markers, xy, guess.evidence, poses, unsure)
 
     def _refined(

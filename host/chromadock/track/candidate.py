@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from chromadock.track.bank import Bank
 from chromadock.track.sight import Sight
 
@@ -53,6 +56,11 @@ class Candidate:
     def of(cls, sight: Sight, evidence: float, time_s: float) -> Candidate:
         """From the first frame."""
         return cls(Bank.of(sight), time_s, time_s, 1, int(sight.telling), 1, evidence)
+
+    def pose(self, time_s: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(3, 3) and (3,): where it is expected at a time after the last frame that saw it."""
+        state = self.bank.after(time_s - self.time_s).hypotheses[0].state
+        return state.R, state.t
 
     def seen(self, sight: Sight, evidence: float, time_s: float) -> Candidate | None:
         """After another frame with a dock; None where that is elsewhere."""

@@ -112,7 +112,9 @@ class Tracker:
             after = self._followed(memory, predicted, sight, evidence, time_s, plan)
         memory = after or _unseen(memory, predicted, time_s)
         if sight is not None and after is None and plan.everywhere:
-            memory = _proposed(memory, sight, evidence, time_s)
+            known = [c for c in memory.candidates if evidence < c.evidence]
+            if not any(sight.misnamed(self._dock, *c.pose(time_s)) for c in known):
+                memory = _proposed(memory, sight, evidence, time_s)
         # Published at once, when all is done: see ``at``.
         self._memory = memory
         return self.at(time_s)

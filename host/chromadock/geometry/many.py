@@ -1,0 +1,47 @@
+"""Many poses at once: numpy's calls, not the numbers, are what a few hundred poses cost."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.geometry.pose import Sighting
+
+Real = NDArray[np.float64]
+
+_LEAST_DEPTH_M = 1e-3  # of a marker: none is projected from behind the camera
+
+
+def rotations(turns: Real) -> Real:
+    """(M, 3, 3) rotations by (M, 3) rotation vectors, radians: Rodrigues' formula."""
+    angle = np.linalg.norm(turns, axis=1)[:, None, None] + 1e-12
+    x, y, z = turns.T
+    zero = np.zeros_like(x)
+    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
+    by_sine = np.sin(angle) / angle * cross
+    by_cosine = (1 - np.cos(angle)) / angle**2 * (cross @ cross)
+    return np.asarray(np.eye(3) + by_sine + by_cosine)
+
+
+def rotation_vectors(R: Real) -> Real:
+    """(M, 3) rotation vectors, radians, of (M, 3, 3) rotations."""
+    return np.array([cv2.Rodrigues(one)[0].ravel() for one in R])
+
+
+def errors(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]:
+    """Reprojection errors (M, 2N) of M poses in standard deviations, and their derivatives
+    (M, 2N, 6) by x, y, z and by turns about the camera's axes, as in ``geometry.pose``."""
+    count, zero = len(R), np.zeros(3)
+    arms = np.einsum("mij,nj->mni", R, sighting.points_dock)
+    seen = arms + t[:, None]
+    seen[..., 2] = np.maximum(seen[..., 2], _LEAST_DEPTH_M)
+    camera = sighting.camera
+    pixels, derivatives = cv2.projectPoints(
+        seen.reshape(-1, 3), zero, zero, camera.matrix, camera.distortion
+    )
+    by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(count, -1, 2, 3)
+    by_turn = np.cross(arms[:, :, None, :], by_place)
+    both = np.concatenate([by_place, by_turn], axis=3) / sighting.sigma_px[:, None, None]
+    off = (np.asarray(pixels).reshape(count, -1, 2) - sighting.pixels) / sighting.sigma_px[:, None]
+    return off.reshape(count, -1), both.reshape(count, -1, 6)

@@ -1,0 +1,98 @@
+"""How surely a pose's place is known, where the dock's tilt is not.
+
+From afar the same places are a dock that faces the camera and one that is turned, smaller and so
+nearer.  About the pose that fits best a normal error describes that poorly, and one that covers
+the truth nearly always makes it seem less sure than it is.  So all tilts are tried: at each the
+rest of the pose is fitted, and its posterior density is the likelihood of the places times the
+prior, with what was fitted integrated by Laplace's method (as in ``placement``).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.geometry.many import errors, rotation_vectors, rotations
+from chromadock.geometry.pose import Estimate, Sighting
+from chromadock.robust.acceptance import share_beyond
+from chromadock.robust.guided import MIN_MARKERS
+from chromadock.robust.placement import PosePrior
+
+Real = NDArray[np.float64]
+
+# Tilts are tried on a square lattice, in standard deviations of the prior's.
+_REACH, _STEP = 2.6, 0.2
+_ROUNDS = 4  # of Gauss and Newton
+_DAMPING = 1e-9  # of the trace of the information
+_LEAST_TILTS = 4.0  # that count: fewer, and the lattice is too coarse to integrate on
+
+
+def doubt_over_tilts(sighting: Sighting, told: Estimate, prior: PosePrior) -> float | None:
+    """Probability that the dock is not where ``told`` has it, to ``acceptance.PLACE_TOLERANCE``.
+
+    None where the tilt is known so well that the lattice does not resolve it, or the markers are
+    three, which leave open poses between which no tilts lie.
+    """
+    if len(sighting.pixels) <= MIN_MARKERS:
+        return None
+    R, t, information = _fitted(sighting, told, prior)
+    error, _ = errors(sighting, R, t)
+    turn = rotation_vectors(R @ prior.R_expected.T)
+    unlikely = np.einsum("mi,ij,mj->m", turn, prior.R_information, turn)
+    depth = np.maximum(t[:, 2], 1e-3)
+    log_density = -0.5 * ((error**2).sum(axis=1) + unlikely + _log_det(information))
+    # Of places, as in PosePrior.log_density.
+    log_density -= 3 * np.log(depth)
+    possible = np.isfinite(log_density) & (t[:, 2] > 0)
+    if not possible.any():
+        return None
+    R, t, information = R[possible], t[possible], information[possible]
+    weights = np.exp(log_density[possible] - log_density[possible].max())
+    weights /= weights.sum()
+    if 1 / (weights**2).sum() < _LEAST_TILTS:
+        return None
+    sight = t / np.linalg.norm(t, axis=1, keepdims=True)
+    place = np.linalg.inv(information)[:, :3, :3]
+    sigma = np.sqrt(np.einsum("mi,mij,mj->m", sight, place, sight))
+    return share_beyond(told.t, t, sigma, weights)
+
+
+def _fitted(sighting: Sighting, told: Estimate, prior: PosePrior) -> tuple[Real, Real, Real]:
+    """(M, 3, 3) and (M, 3): at each tilt the pose that fits best, and (M, 4, 4), the information
+    of what was fitted: its place, and its turn about the dock's normal."""
+    steps = np.arange(-_REACH, _REACH + _STEP / 2, _STEP)
+    tilts = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    turns = tilts @ np.linalg.cholesky(prior.R_covariance)[:, :2].T
+    R = rotations(turns) @ _rolled(prior.R_expected, told.R)
+    t = np.tile(told.t, (len(R), 1))
+    for _ in range(_ROUNDS):
+        information, gradient = _normal_equations(sighting, R, t)
+        step = -np.linalg.solve(information, gradient)[..., 0]
+        t = t + step[:, :3]
+        R = rotations(step[:, 3:] * R[:, :, 2]) @ R
+    return R, t, _normal_equations(sighting, R, t)[0]
+
+
+def _normal_equations(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]:
+    """(M, 4, 4) and (M, 4, 1): information, and half the gradient of chi-square, by the place and
+    by the turn about the dock's normal; a pose that ran away stays where it is."""
+    error, jacobian = errors(sighting, R, t)
+    about_normal = jacobian[:, :, 3:] @ R[:, :, 2:]
+    held = np.concatenate([jacobian[:, :, :3], about_normal], axis=2)
+    information = held.transpose(0, 2, 1) @ held
+    gradient = held.transpose(0, 2, 1) @ error[..., None]
+    ran_away = ~(np.isfinite(information).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=(1, 2)))
+    information[ran_away], gradient[ran_away] = np.eye(4), 0.0
+    trace = np.trace(information, axis1=1, axis2=2)[:, None, None]
+    return information + _DAMPING * trace * np.eye(4), gradient
+
+
+def _rolled(R_expected: Real, R: Real) -> Real:
+    """(3, 3): ``R_expected`` turned about the camera's axis as ``R`` is."""
+    turn = R @ R_expected.T
+    roll = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
+    return np.asarray(rotations(np.array([[0.0, 0.0, roll]]))[0] @ R_expected)
+
+
+def _log_det(matrices: Real) -> Real:
+    return np.asarray(np.linalg.slogdet(matrices)[1])

@@ -132,7 +132,7 @@ def measured_detector(skipped: list[str]) -> tuple[dict[str, float], dict[str, f
 
 
 def measured_track() -> dict[str, tuple[float, float]]:
-    """Mean and 98th percentile of the detector with its track, of frames without a dock."""
+    """Mean and 98th percentile of the detector with its track, without a dock and with one."""
     measured = {"plain water": tracked_ratios({WATER: plain_water()})[WATER]}
     real = tracked_ratios(photographs())
     if real:
@@ -140,7 +140,8 @@ def measured_track() -> dict[str, tuple[float, float]]:
         median, worst = order[len(order) // 2], order[-1]
         measured[f"median of {len(real)} photographs: {median}"] = real[median]
         measured[f"worst of them: {worst}"] = real[worst]
-    return measured
+    tracked = tracked_ratios(docks(plain_water()))
+    return measured | {f"{scene}, tracked": ratio for scene, ratio in tracked.items()}
 
 
 def larger_frames(photograph: Any) -> dict[str, Any]:

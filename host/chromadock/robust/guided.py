@@ -21,6 +21,8 @@ HIDDEN = 0.1
 
 # Chi-square with two degrees of freedom that true markers exceed in 0.1%.
 _GATE = 13.8
+# The same that they exceed in 5%: a marker so far from where the others have it may be none.
+_UNLIKELY = 6.0
 # Ways to choose the peaks: bounds the time.
 _MAX_CHOICES = 64
 
@@ -38,64 +40,94 @@ class Guess:
     expected: NDArray[np.float64] | None = None
 
 
-def guided(
-    points_dock: NDArray[np.float64],
-    prior: Estimate,
-    peaks: Peaks,
-    sigma_px: float,
-    camera: CameraModel,
-) -> Guess | None:
-    """The best set of all markers, or of all but one, about where ``prior`` has them.
+class Expectation:
+    """Where ``prior`` has the (n, 3) markers of a dock, metres, in a frame of the camera.
 
-    The evidence is the same likelihood ratio as the search's, with what the prior says of
-    the pose in place of all views.
-
-    Parameters
-    ----------
-    points_dock : (n, 3) metres.
-    prior : the pose expected of this frame, with its information.
-    sigma_px : standard deviation of the peaks' places.
+    ``prior`` is the pose expected of this frame, with its information.
     """
-    seen = projected(points_dock, prior.R, prior.t, camera)
-    if seen is None or len(peaks.snr) < MIN_MARKERS:
-        return None
-    expected, derivatives = seen
-    count, along = len(points_dock), placed_along(points_dock)
-    jacobian = derivatives.reshape(-1, 6)
-    covariance = jacobian @ prior.covariance @ jacobian.T + sigma_px**2 * np.eye(2 * count)
-    z, area = peaks.xy @ np.array([1, 1j]), float(camera.width * camera.height)
 
-    most = max(1, int(_MAX_CHOICES ** (1 / count)))
-    options: list[list[int]] = []
-    size = np.array([camera.width, camera.height])
-    for marker in range(count):
-        # What shines at the border is not a marker that is beyond it, but what is left of its halo.
-        if not ((expected[marker] > 0) & (expected[marker] < size - 1)).all():
-            options.append([])
-            continue
-        off = peaks.xy - expected[marker]
-        own = covariance[2 * marker : 2 * marker + 2, 2 * marker : 2 * marker + 2]
-        square = (off @ np.linalg.inv(own) * off).sum(axis=1)
-        near = np.argsort(square)[:most]
-        options.append([int(i) for i in near if square[i] < _GATE])
+    def __init__(
+        self, points_dock: NDArray[np.float64], prior: Estimate, camera: CameraModel
+    ) -> None:
+        self._area = float(camera.width * camera.height)
+        self._along = placed_along(points_dock)
+        seen = projected(points_dock, prior.R, prior.t, camera)
+        self._places = None if seen is None else seen[0]
+        if seen is not None:
+            jacobian = seen[1].reshape(-1, 6)
+            self._covariance = jacobian @ prior.covariance @ jacobian.T
+            # What shines at the border is no marker beyond it, but what is left of its halo.
+            size = np.array([camera.width, camera.height])
+            self._inside = ((seen[0] > 0) & (seen[0] < size - 1)).all(axis=1)
 
-    best: Guess | None = None
-    for left_out in (None, *range(count)):
-        markers = np.array([m for m in range(count) if m != left_out])
-        if len(markers) < MIN_MARKERS:
-            continue
-        rows = (2 * markers[:, None] + [0, 1]).ravel()
-        part = covariance[np.ix_(rows, rows)]
-        inverse, log_norm = np.linalg.inv(part), -0.5 * np.linalg.slogdet(2 * np.pi * part)[1]
-        chance = np.log(1 - HIDDEN if left_out is None else HIDDEN)
+    def guess(self, peaks: Peaks, sigma_px: float) -> Guess | None:
+        """The best set of all markers, or of all but one, among peaks located to ``sigma_px``.
+
+        The evidence is the same likelihood ratio as the search's, with what the prior says of
+        the pose in place of all views.  One marker is taken for hidden where it has no peak, or
+        where the one that it has is unlikely to be it.
+        """
+        if self._places is None or len(peaks.snr) < MIN_MARKERS:
+            return None
+        count = len(self._places)
+        covariance = self._covariance + sigma_px**2 * np.eye(2 * count)
+        options = self._options(peaks, covariance)
+        hidden = [marker for marker, near in enumerate(options) if not near]
+        every = np.arange(count)
+        if hidden:
+            others = np.delete(every, hidden[0])
+            alone = len(hidden) == 1 and len(others) >= MIN_MARKERS
+            return self._best(peaks, covariance, options, others)[0] if alone else None
+        best, unlikely = self._best(peaks, covariance, options, every)
+        guesses = [best]
+        for marker in unlikely if count > MIN_MARKERS else ():
+            others = np.delete(every, marker)
+            guesses.append(self._best(peaks, covariance, options, others)[0])
+        return max(filter(None, guesses), key=lambda guess: guess.evidence, default=None)
+
+    def _options(self, peaks: Peaks, covariance: NDArray[np.float64]) -> list[list[int]]:
+        """Of each marker the peaks that may be it, the nearest first."""
+        count = len(covariance) // 2
+        most = max(1, int(_MAX_CHOICES ** (1 / count)))
+        own = covariance.reshape(count, 2, count, 2)[range(count), :, range(count)]
+        off = peaks.xy - np.asarray(self._places)[:, None]
+        square = np.einsum("mpi,mij,mpj->mp", off, np.linalg.inv(own), off)
+        square[~self._inside] = np.inf
+        near = np.argsort(square, axis=1)[:, :most]
+        within = np.take_along_axis(square, near, axis=1) < _GATE
+        return [n[w].tolist() for n, w in zip(near, within, strict=True)]
+
+    def _best(
+        self,
+        peaks: Peaks,
+        covariance: NDArray[np.float64],
+        options: list[list[int]],
+        markers: NDArray[np.intp],
+    ) -> tuple[Guess | None, list[int]]:
+        """Of sets of these markers the likeliest, and which of its markers are far from where
+        its others have them; none and all of them where no set has a peak for each."""
         choices = [c for c in product(*(options[m] for m in markers)) if len(set(c)) == len(c)]
         if not choices:
-            continue
+            return None, markers.tolist()
         members = np.array(choices)
-        off = (peaks.xy[members] - expected[markers]).reshape(len(members), -1)
-        evidence = chance + log_norm - 0.5 * (off @ inverse * off).sum(axis=1)
-        evidence += evidence_of_sets(z, peaks, area, members, along[markers])
+        rows = (2 * markers[:, None] + [0, 1]).ravel()
+        part = covariance[np.ix_(rows, rows)]
+        whiten = np.linalg.inv(np.linalg.cholesky(part))
+        log_norm = float(np.log(np.diagonal(whiten) / np.sqrt(2 * np.pi)).sum())
+        inverse = whiten.T @ whiten
+        places = np.asarray(self._places)[markers]
+        off = (peaks.xy[members] - places).reshape(len(members), -1)
+        weighed = off @ inverse
+        chance = np.log(1 - HIDDEN if len(markers) == len(options) else HIDDEN)
+        evidence = chance + log_norm - 0.5 * (weighed * off).sum(axis=1)
+        z = peaks.xy @ np.array([1, 1j])
+        evidence += evidence_of_sets(z, peaks, self._area, members, self._along[markers])
         k = int(evidence.argmax())
-        if best is None or evidence[k] > best.evidence:
-            best = Guess(markers, members[k], float(evidence[k]), expected[markers])
-    return best
+        # Given the others' places a marker's is normal, with the inverse of its own block of the
+        # information for its covariance.
+        size = len(markers)
+        blocks = inverse.reshape(size, 2, size, 2)[range(size), :, range(size)]
+        pull = weighed[k].reshape(size, 2, 1)
+        square = (pull * np.linalg.solve(blocks, pull)).sum(axis=(1, 2))
+        guess = Guess(markers, members[k], float(evidence[k]), places)
+        return guess, markers[square > _UNLIKELY].tolist()

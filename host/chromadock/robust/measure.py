@@ -20,9 +20,9 @@ from chromadock.robust.acceptance import (
     Constellation,
     doubt,
 )
-from chromadock.robust.guided import HIDDEN, Guess, guided
+from chromadock.robust.guided import HIDDEN, Expectation, Guess
 from chromadock.robust.peaks import Peaks
-from chromadock.robust.placement import PosePrior, placement
+from chromadock.robust.placement import Placement, PosePrior, placement
 from chromadock.robust.plateau import on_one_thing
 from chromadock.robust.refine import Tops, refined
 from chromadock.robust.response import Response
@@ -36,6 +36,10 @@ photograph without a dock has as much."""
 
 MAX_CHOICES = 3
 """Places of each of four markers that are tried in every combination; of more markers two."""
+
+
+SAME_ERROR = 0.05
+"""Share by which markers' errors may grow and the poses stay as they are fitted."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -75,19 +79,16 @@ class Measure:
 
         With the poses downhill of the track's: which of them is right is the track's to say.
         """
-        best: Constellation | None = None
+        guesses: list[tuple[Guess, int, Peaks]] = []
         for prior in priors:
+            expectation = Expectation(self.view.points, prior, self.view.camera)
             for cell, found in peaks.items():
-                error_px = PEAK_ERROR * cell
-                guess = guided(self.view.points, prior, found, error_px, self.view.camera)
-                if guess is None or guess.evidence < LEAST_FOR_A_TRACK:
-                    continue
-                if best is None or (len(guess.markers), guess.evidence) > (
-                    len(best.markers),
-                    best.evidence,
-                ):
-                    best = self._partly(guess, cell, found, priors) or best
-        return best
+                guess = expectation.guess(found, PEAK_ERROR * cell)
+                if guess is not None and guess.evidence >= LEAST_FOR_A_TRACK:
+                    guesses.append((guess, cell, found))
+        guesses.sort(key=lambda g: (len(g[0].markers), g[0].evidence), reverse=True)
+        measured = (self._partly(*guess, priors) for guess in guesses)
+        return next(filter(None, measured), None)
 
     def incomplete(self, peaks: dict[int, Peaks]) -> Constellation | None:
         """The dock with a marker out, if that explains the frame well enough."""
@@ -121,16 +122,14 @@ class Measure:
         if evidence < LEAST_EVIDENCE:
             self._note(candidate.evidence, poses[0].reprojection_px)
             return None
-        sighting = replace(sighting, sigma_px=placed.sigma_px)
-        order = np.argsort(-placed.weights, kind="stable")
-        again = (refined_pose(sighting, poses[k].R, poses[k].t) or poses[k] for k in order)
-        wide = tuple(widened(sighting, pose) for pose in again)
+        poses, weights, sighting = _again(sighting, poses, placed)
+        wide = tuple(widened(sighting, pose) for pose in poses)
         if np.linalg.norm(wide[0].t) > self.largest_range_m:
             return None
         if not self._all_belong(candidate, sighting, wide[0]):
             return None
         markers = np.arange(len(self.view.points))
-        unsure = self._doubt(sighting, wide, placed.weights[order])
+        unsure = self._doubt(sighting, wide, weights)
         return Constellation(markers, xy[k], evidence, wide, unsure)
 
     def _all_belong(self, candidate: Candidate, sighting: Sighting, pose: Estimate) -> bool:
@@ -183,12 +182,12 @@ class Measure:
         if not poses:
             return None
         placed = placement(sighting, poses, self.prior)
-        sighting = replace(sighting, sigma_px=placed.sigma_px)
-        order = np.argsort(-placed.weights, kind="stable")
-        again = (refined_pose(sighting, poses[k].R, poses[k].t) or poses[k] for k in order)
-        poses = tuple(widened(sighting, pose) for pose in again)
-        # About a track's pose the track says how sure the place is.
-        unsure = 0.0 if priors else self._doubt(sighting, poses, placed.weights[order])
+        poses, weights, sighting = _again(sighting, poses, placed)
+        if priors:
+            # The track takes the markers' places in, and says itself how sure the pose is.
+            return Constellation(guess.markers, xy, guess.evidence, poses)
+        poses = tuple(widened(sighting, pose) for pose in poses)
+        unsure = self._doubt(sighting, poses, weights)
         return Constellation(guess.markers, xy, guess.evidence, poses, unsure)
 
     def _refined(
@@ -209,6 +208,21 @@ def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]
     xy = product(*(top.xy[:each] for top in tops))
     sigma = product(*(top.sigma[:each] for top in tops))
     return np.array(list(xy)), np.array(list(sigma))
+
+
+def _again(
+    sighting: Sighting, poses: tuple[Estimate, ...], placed: Placement
+) -> tuple[tuple[Estimate, ...], NDArray[np.float64], Sighting]:
+    """Poses fitted with the errors that the markers turned out to have, the likeliest first, and
+    their weights; the sighting with those errors."""
+    order = np.argsort(-placed.weights, kind="stable").tolist()
+    poses, weights = tuple(poses[k] for k in order), placed.weights[order]
+    as_before = np.allclose(placed.sigma_px, sighting.sigma_px, rtol=SAME_ERROR)
+    if as_before:
+        return poses, weights, sighting
+    sighting = replace(sighting, sigma_px=placed.sigma_px)
+    again = tuple(refined_pose(sighting, pose.R, pose.t) or pose for pose in poses)
+    return again, weights, sighting
 
 
 def _downhill(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimate, ...]:

@@ -148,12 +148,20 @@ def _modes(state: State, sight: Sight) -> list[Fused]:
     modes: list[Fused] = []
     starts = [(state.R, state.t), *((p.R, p.t) for p in sight.poses)]
     for R, t in starts:
+        if any(_is_there(mode.state, R, t) for mode in modes):
+            continue
         fused = with_markers(state, sight.markers, R, t)
         if fused is None or not fused.within_gate:
             continue
         if not any(same_rotation(fused.state.R, other.state.R) for other in modes):
             modes.append(fused)
     return modes
+
+
+def _is_there(state: State, R: Floats, t: Floats) -> bool:
+    """Whether from a pose one comes to that of a state again: it is well within its errors."""
+    off = np.concatenate([t - state.t, turn_between(state.R, R)])
+    return bool(off @ np.linalg.solve(state.covariance[POSE, POSE], off) < _SAME)
 
 
 def _branch(h: Hypothesis, fused: Fused, first: bool) -> _Branch:

@@ -7,7 +7,7 @@ import pytest
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.geometry.pose import Estimate
-from chromadock.robust.guided import guided
+from chromadock.robust.guided import Expectation, Guess
 from chromadock.robust.peaks import Peaks
 
 CAMERA = CameraModel.nominal(640, 480)
@@ -30,8 +30,12 @@ def peaks(*, shown: list[int], specks: int, seed: int = 0) -> Peaks:
     )
 
 
+def guided(points: np.ndarray, prior: Estimate, peaks: Peaks, sigma_px: float) -> Guess | None:
+    return Expectation(points, prior, CAMERA).guess(peaks, sigma_px)
+
+
 def test_all_markers_are_taken_where_the_pose_expects_them() -> None:
-    guess = guided(POINTS, PRIOR, peaks(shown=[0, 1, 2, 3], specks=20), 1.0, CAMERA)
+    guess = guided(POINTS, PRIOR, peaks(shown=[0, 1, 2, 3], specks=20), 1.0)
     assert guess is not None
     assert guess.markers.tolist() == guess.members.tolist() == [0, 1, 2, 3]
 
@@ -39,7 +43,7 @@ def test_all_markers_are_taken_where_the_pose_expects_them() -> None:
 @pytest.mark.parametrize("missing", [0, 1, 2, 3])
 def test_three_of_four_are_enough(missing: int) -> None:
     shown = [m for m in range(4) if m != missing]
-    guess = guided(POINTS, PRIOR, peaks(shown=shown, specks=15), 1.0, CAMERA)
+    guess = guided(POINTS, PRIOR, peaks(shown=shown, specks=15), 1.0)
     assert guess is not None
     assert guess.markers.tolist() == shown
     assert guess.members.tolist() == [0, 1, 2]
@@ -47,13 +51,13 @@ def test_three_of_four_are_enough(missing: int) -> None:
 
 
 def test_two_of_four_are_not() -> None:
-    assert guided(POINTS, PRIOR, peaks(shown=[0, 3], specks=0), 1.0, CAMERA) is None
+    assert guided(POINTS, PRIOR, peaks(shown=[0, 3], specks=0), 1.0) is None
 
 
 def test_specks_about_the_expected_places_say_little() -> None:
     evidence = []
     for seed in range(40):
-        guess = guided(POINTS, PRIOR, peaks(shown=[], specks=60, seed=seed), 1.0, CAMERA)
+        guess = guided(POINTS, PRIOR, peaks(shown=[], specks=60, seed=seed), 1.0)
         evidence.append(-np.inf if guess is None else guess.evidence)
     assert np.mean(np.array(evidence) > np.log(30)) <= 1 / 30 + 0.05
 
@@ -61,14 +65,14 @@ def test_specks_about_the_expected_places_say_little() -> None:
 def test_the_less_sure_the_pose_the_less_the_same_peaks_say() -> None:
     seen = peaks(shown=[0, 1, 3], specks=5)
     vague = Estimate(R, PRIOR.t, 0.0, 0.0, SURE / 9)
-    sure, unsure = (guided(POINTS, p, seen, 1.0, CAMERA) for p in (PRIOR, vague))
+    sure, unsure = (guided(POINTS, p, seen, 1.0) for p in (PRIOR, vague))
     assert sure is not None and unsure is not None
     assert sure.evidence > unsure.evidence
 
 
 def test_a_pose_behind_the_camera_expects_nothing() -> None:
     behind = Estimate(R, -T, 0.0, 0.0, SURE)
-    assert guided(POINTS, behind, peaks(shown=[0, 1, 2, 3], specks=0), 1.0, CAMERA) is None
+    assert guided(POINTS, behind, peaks(shown=[0, 1, 2, 3], specks=0), 1.0) is None
 
 
 def test_a_speck_at_the_border_is_no_marker_that_is_beyond_it() -> None:
@@ -79,4 +83,4 @@ def test_a_speck_at_the_border_is_no_marker_that_is_beyond_it() -> None:
     assert outside.sum() == 2
     shown = np.where(outside[:, None], np.column_stack([np.full(4, 637.0), places[:, 1]]), places)
     four = replace(peaks(shown=[0, 1, 2, 3], specks=0), xy=shown)
-    assert guided(POINTS, beyond, four, 1.0, CAMERA) is None
+    assert guided(POINTS, beyond, four, 1.0) is None

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from chromadock.geometry.pose import Estimate
 
-FALSE_ALARM_RATE = 10**-4.5
+FALSE_ALARM_RATE = 10**-5.5
 """Bound on the share of frames of Poisson clutter in which any set of peaks is taken for the
-dock.  It is Markov's, and so loose by far; but real water is not quite Poisson.  What comes of
-both on photographs is in docs/robust.md."""
+dock.  It is Markov's, and so loose by far; but real water is not quite Poisson, and what is false
+all the same has mostly less than this.  What comes of both on photographs is in docs/robust.md."""
 
 LEAST_EVIDENCE = float(-np.log(FALSE_ALARM_RATE))
 

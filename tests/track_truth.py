@@ -56,13 +56,14 @@ def found(
         pose=poses[0].pose(),
         estimates=poses,
         evidence=evidence,
+        sigma_px=(NOISE_PX,) * len(at),
     )
 
 
 def sight(pose: Pose, rng: np.random.Generator, names: tuple[str, ...] = DOCK.names) -> Sight:
     what = found(pose, rng, names=names)
     assert what.markers is not None
-    made = Sight.of(what.markers, what.estimates, DOCK, CAMERA)
+    made = Sight.of(what.markers, what.sigma_px, what.estimates, DOCK, CAMERA)
     assert made is not None
     return made
 

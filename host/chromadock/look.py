@@ -61,7 +61,8 @@ class Found:
     5 % of the range: no pose), ``partial`` (all markers but one, about where a prior has them or
     where ``incomplete`` allows it) or ``not_found``; ``passed_fraction`` the share of the frame
     that stands out in the markers' colour; ``pose`` the better one, with its alternative.
-    ``estimates``: both, with their information, for a track.  ``evidence``: decades by which
+    ``sigma_px``: standard deviations of the markers' places, in their order; ``estimates``: both
+    poses, with their information; both for a track.  ``evidence``: decades by which
     the dock explains what was seen better than clutter does; None where a method does not
     weigh it.  ``hue`` 0..1535: of the light that the markers add, as received; ``clipped`` and
     ``misfit``: see ``Detection``.
@@ -77,6 +78,7 @@ class Found:
     hue: int | None = None
     clipped: float | None = None
     misfit: Misfit | None = None
+    sigma_px: tuple[float, ...] = ()
 
 
 class Method(Protocol):

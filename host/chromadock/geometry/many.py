@@ -25,8 +25,13 @@ def rotations(turns: Real) -> Real:
 
 
 def rotation_vectors(R: Real) -> Real:
-    """(M, 3) rotation vectors, radians, of (M, 3, 3) rotations."""
-    return np.array([cv2.Rodrigues(one)[0].ravel() for one in R])
+    """(M, 3) rotation vectors, radians, of (M, 3, 3) rotations by less than half a turn."""
+    axis = np.stack(
+        [R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1
+    )
+    sine, cosine = np.linalg.norm(axis, axis=1), np.trace(R, axis1=1, axis2=2) - 1
+    angle = np.arctan2(sine, cosine)
+    return np.asarray(axis * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 0.5)[:, None])
 
 
 def errors(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]:

@@ -18,6 +18,10 @@ _CONVERGED = 1e-3
 _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-9, 1e-3, 1e6
 _EXCLUDED = 20.0  # chi-square: a pose that fits by so much worse is not open; e^10 to one
 _SAME_ROTATION = 1e-3  # radians, between two minima that are one
+_LEAST_KNOWN = 1e-14  # of what is known best: less is lost in rounding
+# Markers' depths, in widths of the dock: nearer one is in the lens, farther the dock is a point,
+# and a search that came there ran away.
+_NEAREST, _FARTHEST = 1e-3, 1e4
 _PLANAR = 1e-6  # thickness over width of a set of points
 
 
@@ -74,7 +78,9 @@ class Estimate:
     @property
     def covariance(self) -> NDArray[np.float64]:
         """(6, 6) float64, the inverse of ``information``; what is unknown has a large variance."""
-        return np.asarray(np.linalg.pinv(self.information, rcond=1e-14, hermitian=True))
+        known, axes = np.linalg.eigh(self.information)
+        known = np.maximum(known, _LEAST_KNOWN * known[-1])
+        return np.asarray(axes / known @ axes.T)
 
     def distance(self, R: NDArray[np.float64], t: NDArray[np.float64]) -> float:
         """Mahalanobis distance squared of another pose; below 12.6 for 95% of true poses."""
@@ -157,8 +163,8 @@ def refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) 
     """The minimum of chi-square downhill of a pose, by Levenberg and Marquardt's method.
 
     Searched about the markers' centroid, so that the origin of the dock frame does not matter.
-    None where a marker would be behind the camera, or none is reached in so many rounds: the way
-    there leads through poses that hardly fit.
+    None where a marker would be behind the camera, none is reached in so many rounds (the way
+    there leads through poses that hardly fit), or it has a marker in the lens or all in one point.
     """
     centre = sighting.points_dock.mean(axis=0)
     pose = _refined(sighting.about(centre), R, t + R @ centre)
@@ -187,6 +193,9 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
             if damping > _MOST_DAMPING:
                 break
     else:
+        return None
+    depths = (sighting.points_dock @ R.T + t)[:, 2] / np.ptp(sighting.points_dock, axis=0).max()
+    if not (depths.min() > _NEAREST and depths.max() < _FARTHEST):
         return None
     off = now.error.reshape(-1, 2) * sighting.sigma_px[:, None]
     reprojection_px = float(np.sqrt((off**2).sum(axis=1).mean()))
@@ -270,7 +279,9 @@ def _of_three(sighting: Sighting) -> tuple[Estimate, ...]:
     found: list[Estimate] = []
     for R, t in starts:
         pose = _refined(sighting, R, t)
-        if pose is not None and not any(same_rotation(pose.R, other.R) for other in found):
+        if pose is None or pose.chi_square > _EXCLUDED:
+            continue
+        if not any(same_rotation(pose.R, other.R) for other in found):
             found.append(pose)
     return tuple(sorted(found, key=lambda pose: -float(np.trace(pose.R))))
 

@@ -41,12 +41,14 @@ NO_DOUBT = 0.02
 class Constellation:
     """Markers that were taken for the dock's.
 
-    ``markers`` (k,): which of the dock's; ``xy`` (k, 2) pixels; ``evidence``: natural log
-    of the likelihood ratio; ``poses``: one or two, the better first; ``doubt``: see there.
+    ``markers`` (k,): which of the dock's; ``xy`` (k, 2) pixels; ``sigma_px`` (k,): their standard
+    deviations; ``evidence``: natural log of the likelihood ratio; ``poses``: one or two, the
+    better first; ``doubt``: see there.
     """
 
     markers: NDArray[np.intp]
     xy: NDArray[np.float64]
+    sigma_px: NDArray[np.float64]
     evidence: float
     poses: tuple[Estimate, ...]
     doubt: float = 0.0

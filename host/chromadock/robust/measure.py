@@ -37,7 +37,6 @@ photograph without a dock has as much."""
 MAX_CHOICES = 3
 """Places of each of four markers that are tried in every combination; of more markers two."""
 
-
 SAME_ERROR = 0.05
 """Share by which markers' errors may grow and the poses stay as they are fitted."""
 
@@ -130,7 +129,7 @@ class Measure:
             return None
         markers = np.arange(len(self.view.points))
         unsure = self._doubt(sighting, wide, weights)
-        return Constellation(markers, xy[k], evidence, wide, unsure)
+        return Constellation(markers, xy[k], sighting.sigma_px, evidence, wide, unsure)
 
     def _all_belong(self, candidate: Candidate, sighting: Sighting, pose: Estimate) -> bool:
         """Whether each marker is likelier where it was taken to be than hidden, with a peak of
@@ -183,12 +182,10 @@ class Measure:
             return None
         placed = placement(sighting, poses, self.prior)
         poses, weights, sighting = _again(sighting, poses, placed)
-        if priors:
-            # The track takes the markers' places in, and says itself how sure the pose is.
-            return Constellation(guess.markers, xy, guess.evidence, poses)
-        poses = tuple(widened(sighting, pose) for pose in poses)
-        unsure = self._doubt(sighting, poses, weights)
-        return Constellation(guess.markers, xy, guess.evidence, poses, unsure)
+        poses = poses if priors else tuple(widened(sighting, pose) for pose in poses)
+        # About a track's pose the track says how sure the place is.
+        unsure = 0.0 if priors else self._doubt(sighting, poses, weights)
+        return Constellation(guess.markers, xy, sighting.sigma_px, guess.evidence, poses, unsure)
 
     def _refined(
         self,

@@ -110,6 +110,7 @@ class RobustMethod:
             evidence=best.evidence / float(np.log(10)),
             hue=received_hue(response, best.xy),
             clipped=clipped_share(frame_bgr, best.xy),
+            sigma_px=tuple(best.sigma_px.tolist()),
         )
 
 

@@ -24,7 +24,7 @@ from chromadock.robust.layout import finest_cell
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
-ATTITUDE_RAD = np.radians([10.0, 25.0, 10.0])
+ATTITUDE_RAD = np.radians([10.0, 23.0, 10.0])
 """Standard deviations of pitch, yaw and roll between dock and camera: a vehicle on its way
 to the dock swims level and about along its axis."""
 

@@ -22,7 +22,7 @@ Real = NDArray[np.float64]
 
 # Tilts are tried on a square lattice, in standard deviations of the prior's.
 _REACH, _STEP = 2.6, 0.2
-_ROUNDS = 4  # of Gauss and Newton
+_ROUNDS = 2  # of Gauss and Newton: more change nothing, the tilt being held
 _DAMPING = 1e-9  # of the trace of the information
 _LEAST_TILTS = 4.0  # that count: fewer, and the lattice is too coarse to integrate on
 
@@ -35,19 +35,18 @@ def doubt_over_tilts(sighting: Sighting, told: Estimate, prior: PosePrior) -> fl
     """
     if len(sighting.pixels) <= MIN_MARKERS:
         return None
-    R, t, information = _fitted(sighting, told, prior)
-    error, _ = errors(sighting, R, t)
-    turn = rotation_vectors(R @ prior.R_expected.T)
-    unlikely = np.einsum("mi,ij,mj->m", turn, prior.R_information, turn)
-    depth = np.maximum(t[:, 2], 1e-3)
-    log_density = -0.5 * ((error**2).sum(axis=1) + unlikely + _log_det(information))
-    # Of places, as in PosePrior.log_density.
-    log_density -= 3 * np.log(depth)
-    possible = np.isfinite(log_density) & (t[:, 2] > 0)
-    if not possible.any():
+    R, t = _fitted(sighting, told, prior)
+    ahead = np.isfinite(t).all(axis=1) & (t[:, 2] > 0)
+    if not ahead.any():
         return None
-    R, t, information = R[possible], t[possible], information[possible]
-    weights = np.exp(log_density[possible] - log_density[possible].max())
+    R, t = R[ahead], t[ahead]
+    information, _, chi_square = _normal_equations(sighting, R, t)
+    log_density = -0.5 * (chi_square + np.linalg.slogdet(information)[1])
+    turn = rotation_vectors(R @ prior.R_expected.T)
+    log_density -= 0.5 * np.einsum("mi,ij,mj->m", turn, prior.R_information, turn)
+    # Of places, as in PosePrior.log_density.
+    log_density -= 3 * np.log(t[:, 2])
+    weights = np.exp(log_density - log_density.max())
     weights /= weights.sum()
     if 1 / (weights**2).sum() < _LEAST_TILTS:
         return None
@@ -57,25 +56,25 @@ def doubt_over_tilts(sighting: Sighting, told: Estimate, prior: PosePrior) -> fl
     return share_beyond(told.t, t, sigma, weights)
 
 
-def _fitted(sighting: Sighting, told: Estimate, prior: PosePrior) -> tuple[Real, Real, Real]:
-    """(M, 3, 3) and (M, 3): at each tilt the pose that fits best, and (M, 4, 4), the information
-    of what was fitted: its place, and its turn about the dock's normal."""
+def _fitted(sighting: Sighting, told: Estimate, prior: PosePrior) -> tuple[Real, Real]:
+    """(M, 3, 3) and (M, 3): at each tilt the pose that fits best."""
     steps = np.arange(-_REACH, _REACH + _STEP / 2, _STEP)
     tilts = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     turns = tilts @ np.linalg.cholesky(prior.R_covariance)[:, :2].T
     R = rotations(turns) @ _rolled(prior.R_expected, told.R)
     t = np.tile(told.t, (len(R), 1))
     for _ in range(_ROUNDS):
-        information, gradient = _normal_equations(sighting, R, t)
+        information, gradient, _ = _normal_equations(sighting, R, t)
         step = -np.linalg.solve(information, gradient)[..., 0]
         t = t + step[:, :3]
         R = rotations(step[:, 3:] * R[:, :, 2]) @ R
-    return R, t, _normal_equations(sighting, R, t)[0]
+    return R, t
 
 
-def _normal_equations(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]:
+def _normal_equations(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real, Real]:
     """(M, 4, 4) and (M, 4, 1): information, and half the gradient of chi-square, by the place and
-    by the turn about the dock's normal; a pose that ran away stays where it is."""
+    by the turn about the dock's normal; (M,) chi-square.  A pose that ran away stays where it is,
+    with an infinite chi-square."""
     error, jacobian = errors(sighting, R, t)
     about_normal = jacobian[:, :, 3:] @ R[:, :, 2:]
     held = np.concatenate([jacobian[:, :, :3], about_normal], axis=2)
@@ -83,8 +82,9 @@ def _normal_equations(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]
     gradient = held.transpose(0, 2, 1) @ error[..., None]
     ran_away = ~(np.isfinite(information).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=(1, 2)))
     information[ran_away], gradient[ran_away] = np.eye(4), 0.0
+    chi_square = np.where(ran_away, np.inf, (error**2).sum(axis=1))
     trace = np.trace(information, axis1=1, axis2=2)[:, None, None]
-    return information + _DAMPING * trace * np.eye(4), gradient
+    return information + _DAMPING * trace * np.eye(4), gradient, chi_square
 
 
 def _rolled(R_expected: Real, R: Real) -> Real:
@@ -92,7 +92,3 @@ def _rolled(R_expected: Real, R: Real) -> Real:
     turn = R @ R_expected.T
     roll = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
     return np.asarray(rotations(np.array([[0.0, 0.0, roll]]))[0] @ R_expected)
-
-
-def _log_det(matrices: Real) -> Real:
-    return np.asarray(np.linalg.slogdet(matrices)[1])

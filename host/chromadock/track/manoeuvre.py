@@ -24,6 +24,10 @@ SURPRISING = 2.0
 """Chi-square over its degrees of freedom up to which a frame is what a quiet vehicle shows: one in
 twenty to fifty is beyond, and is looked at for a manoeuvre as well."""
 
+MISSES = 3.0
+"""Frames that miss the dock, of a vehicle that manoeuvres, to those of one that swims quietly: a
+far dock is seen in two frames of three, one that has moved out of reach in none."""
+
 _LIKELY = 0.1  # of a manoeuvre: both models are tried
 _SURE = 7.0  # natural logarithm of odds: no frame makes surer than a thousandth
 
@@ -31,6 +35,12 @@ _SURE = 7.0  # natural logarithm of odds: no frame makes surer than a thousandth
 def later(swift: float, elapsed_s: float) -> float:
     """Probability 0..1 of a manoeuvre ``elapsed_s`` after it was ``swift``."""
     return SELDOM + (swift - SELDOM) * math.exp(-elapsed_s / LASTS_S)
+
+
+def missed(swift: float) -> float:
+    """Probability 0..1 of a manoeuvre after a frame did not show the dock where it was expected:
+    a vehicle that manoeuvres loses it MISSES times as often."""
+    return MISSES * swift / (1 - swift + MISSES * swift)
 
 
 def decided(

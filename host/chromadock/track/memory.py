@@ -12,7 +12,7 @@ from chromadock.results.track import Track
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import Candidate
 from chromadock.track.manoeuvre import SELDOM, later
-from chromadock.track.states import KEPT_S, MOST_DOUBT_KEPT, state_of
+from chromadock.track.states import KEPT_S, MOST_DOUBT_UNSEEN, state_of
 from chromadock.track.telemetry import UNHEARD, Telemetry
 from chromadock.track.told import following
 
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 @dataclass(frozen=True, eq=False, slots=True)
 class Locked:
     """``bank`` at ``time_s``; ``measured_s``: when the dock was last seen, ``whole`` or not, with
-    ``evidence`` in decades; ``sure``: whether its place has been known well enough to tell a pose.
+    ``evidence`` in decades; ``sure``: whether its place was known well enough then to tell a pose.
 
     ``swift`` 0..1: probability that the vehicle manoeuvres.
     """
@@ -81,7 +81,7 @@ class Memory:
         if locked is None or state not in ("tracking", "recently_lost"):
             return Track(state, time_s, age_s=age_s)
         bank = locked.after(time_s - locked.time_s)
-        if not locked.sure or bank.doubt > MOST_DOUBT_KEPT:
+        if not locked.sure or bank.doubt > MOST_DOUBT_UNSEEN:
             return Track("acquiring" if state == "tracking" else state, time_s, age_s=age_s)
         hypotheses = bank.about(origin).hypotheses
         return following(state, time_s, hypotheses, time_s - locked.measured_s)

@@ -40,27 +40,28 @@ class Sight:
     def of(
         cls,
         markers: Mapping[str, tuple[float, float]],
+        sigma_px: Sequence[float],
         poses: Sequence[Estimate],
         dock: DockGeometry,
         camera: CameraModel,
     ) -> Sight | None:
-        """From what a method found; all markers' errors are taken for equal.
+        """From what a method found: ``markers`` with standard deviations in their order.
 
         None where the best pose has a marker behind the camera.
         """
         points = dock.points[[dock.names.index(name) for name in markers]]
         best = poses[0]
-        seen = projected(points, best.R, best.t, camera)
-        if seen is None:
+        if projected(points, best.R, best.t, camera) is None:
             return None
-        jacobian = seen[1].reshape(-1, 6)
-        # With J the derivatives and errors s: information = J^T J / s^2.
-        unit = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
-        certainty = float(np.trace(unit @ best.information)) / 6
-        widened = 1 + FLOOR_PX**2 * certainty
-        sigma = np.full(len(points), np.sqrt(widened / certainty))
+        variance = np.square(sigma_px)
+        widened = float(np.mean(1 / variance) / np.mean(1 / (variance + FLOOR_PX**2)))
         return cls(
-            Sighting(points, np.array(list(markers.values())), sigma, camera),
+            Sighting(
+                points,
+                np.array(list(markers.values())),
+                np.sqrt(variance + FLOOR_PX**2),
+                camera,
+            ),
             tuple(
                 replace(p, chi_square=p.chi_square / widened, information=p.information / widened)
                 for p in poses

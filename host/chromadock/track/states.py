@@ -10,14 +10,18 @@ KEPT_S = 2.5
 """After this nothing is expected any more.  By then place is uncertain by 0.7 m: as wide as the
 dock, so that where it was says no more than a search of the whole frame finds."""
 
-MOST_DOUBT = 0.02
+MOST_DOUBT = 0.05
 """Probability that the place is off by more than 5 % of the range, beyond which a dock that was
 locked has no pose yet.  Less than for a single frame (``robust.acceptance``): what is wrong with
 one frame of a track is wrong with those after it too."""
 
-MOST_DOUBT_KEPT = 0.3
-"""The same of one that has had a pose: with a marker out, or out of sight, it is known less well,
+MOST_DOUBT_KEPT = 0.15
+"""The same of one that has a pose and was just measured: with a marker out it is known less well,
 but what was right before is not suddenly elsewhere."""
+
+MOST_DOUBT_UNSEEN = 0.3
+"""The same of one that had a pose when it was last measured: out of sight it is known less well
+every moment."""
 
 STATES = ("never_seen", "acquiring", "tracking", "recently_lost", "lost")
 

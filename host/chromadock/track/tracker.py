@@ -15,12 +15,12 @@ from chromadock.results.track import Track
 from chromadock.track.attitude import Attitude, expected, expected_if_told
 from chromadock.track.bank import Bank
 from chromadock.track.candidate import LOCK_EVIDENCE, Candidate
-from chromadock.track.manoeuvre import decided, later
+from chromadock.track.manoeuvre import decided, later, missed
 from chromadock.track.memory import Locked, Memory
 from chromadock.track.motion import turning_of
 from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.sight import Sight
-from chromadock.track.states import MOST_DOUBT, TRACKING_S
+from chromadock.track.states import MOST_DOUBT, MOST_DOUBT_KEPT, TRACKING_S
 
 KEEP_EVIDENCE = 2.5
 """Decades, of markers where the track has them: specks there would draw it away, and a frame
@@ -182,7 +182,7 @@ class Tracker:
         if after is None:
             return None
         bank, swift = after[0].doubting(sight), after[1]
-        sure = locked.sure or bank.doubt <= MOST_DOUBT
+        sure = bank.doubt <= (MOST_DOUBT_KEPT if locked.sure else MOST_DOUBT)
         return replace(
             memory,
             locked=Locked(bank, time_s, time_s, sight.whole, evidence, sure, swift),
@@ -203,7 +203,7 @@ class Tracker:
         if not plan.everywhere and (found.evidence or 0.0) < KEEP_EVIDENCE:
             return None
         poses = [pose.about(self._centre) for pose in found.estimates]
-        return Sight.of(found.markers, poses, self._dock, camera)
+        return Sight.of(found.markers, found.sigma_px, poses, self._dock, camera)
 
 
 def _looked(memory: Memory, time_s: float, plan: Plan) -> Memory:
@@ -235,11 +235,12 @@ class Prediction:
 
 
 def _unseen(memory: Memory, predicted: Prediction | None, time_s: float) -> Memory:
-    """After a frame that did not show the locked dock."""
+    """After a frame that did not show the locked dock, be it for a manoeuvre since the last."""
     if predicted is None:
         return replace(memory, locked=None)
-    bank = predicted.bank(predicted.swift)
-    locked = replace(predicted.locked, bank=bank, time_s=time_s, swift=predicted.swift)
+    swift = missed(predicted.swift)
+    bank = predicted.bank(swift)
+    locked = replace(predicted.locked, bank=bank, time_s=time_s, swift=swift)
     return replace(memory, locked=locked, faced_s=predicted.faced_s)
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, refined
+from chromadock.geometry.profile import widened
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points
@@ -177,3 +178,28 @@ def test_an_estimate_reads_as_a_pose() -> None:
 def chi_square(seen: Sighting, R: np.ndarray, t: np.ndarray) -> float:
     off = seen.camera.project(seen.points_dock @ R.T + t) - seen.pixels
     return float(((off / seen.sigma_px[:, None]) ** 2).sum())
+
+
+def test_places_that_fit_no_dock_give_no_pose_in_the_distance() -> None:
+    """Any three places: a search that finds no dock nearby shrinks it to a point."""
+    rng, count = np.random.default_rng(0), 0
+    points = DockGeometry.default().points[:3]
+    for _ in range(1000):
+        pixels = rng.uniform((200, 150), (440, 330), (3, 2))
+        for pose in estimates(Sighting(points, pixels, rng.uniform(0.1, 0.4, 3), CAMERA)):
+            count += 1
+            assert 0 < pose.t[2] < 1e4
+            wide = widened(Sighting(points, pixels, np.full(3, 0.3), CAMERA), pose)
+            for spread in (pose.covariance, wide.covariance):
+                assert np.isfinite(spread).all()
+                assert np.linalg.eigvalsh(spread)[0] > 0
+    assert count > 1000
+
+
+def test_what_a_pose_leaves_unknown_has_a_large_variance() -> None:
+    information = np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 0.0])
+    variances = np.diag(
+        Estimate(np.eye(3), np.array([0, 0, 1.0]), 0.0, 0.0, information).covariance
+    )
+    assert variances[:5] == pytest.approx(1.0)
+    assert variances[5] > 1e9

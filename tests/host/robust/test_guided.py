@@ -50,6 +50,17 @@ def test_three_of_four_are_enough(missing: int) -> None:
     assert guess.evidence > np.log(30)
 
 
+@pytest.mark.parametrize("missing", [0, 1, 2, 3])
+def test_a_peak_beside_a_marker_that_is_out_is_not_taken_for_it(missing: int) -> None:
+    """The other three have it to a pixel or two, the pose expected only to twenty."""
+    others = [m for m in range(4) if m != missing]
+    all_four = peaks(shown=[0, 1, 2, 3], specks=0)
+    beside = all_four.xy + np.where(np.arange(4) == missing, 1.0, 0.0)[:, None] * [18.0, 12.0]
+    guess = guided(POINTS, PRIOR, replace(all_four, xy=beside), 1.0)
+    assert guess is not None
+    assert guess.markers.tolist() == guess.members.tolist() == others
+
+
 def test_two_of_four_are_not() -> None:
     assert guided(POINTS, PRIOR, peaks(shown=[0, 3], specks=0), 1.0) is None
 

@@ -32,7 +32,8 @@ def undecided(pose: Pose, noise: np.ndarray) -> Sight:
         DOCK.points @ pose[0].T + pose[1]
     )
     poses = estimates(Sighting(DOCK.points, at + noise, np.full(4, 0.3), CAMERA))
-    made = Sight.of(dict(zip(DOCK.names, map(tuple, at + noise), strict=True)), poses, DOCK, CAMERA)
+    markers = dict(zip(DOCK.names, map(tuple, at + noise), strict=True))
+    made = Sight.of(markers, [0.3] * 4, poses, DOCK, CAMERA)
     assert made is not None
     return made
 

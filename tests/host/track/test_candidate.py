@@ -20,7 +20,7 @@ def sight(name: str, seen: int, rng: np.random.Generator) -> Sight:
     pixels = CAMERA.project(places) + rng.normal(0, 0.1, (seen, 2))
     poses = estimates(Sighting(dock.points[:seen], pixels, np.full(seen, 0.1), CAMERA))
     markers = {n: (x, y) for n, (x, y) in zip(dock.names, pixels.tolist(), strict=False)}
-    found = Sight.of(markers, poses, dock, CAMERA)
+    found = Sight.of(markers, [0.1] * seen, poses, dock, CAMERA)
     assert found is not None
     return found
 

@@ -10,7 +10,7 @@ from track_truth import approach, sight
 from vehicle_truth import Yawing, followed, telemetry
 
 from chromadock.track.bank import Bank
-from chromadock.track.manoeuvre import LASTS_S, SELDOM, decided, later
+from chromadock.track.manoeuvre import LASTS_S, SELDOM, decided, later, missed
 from chromadock.track.motion import TURNING, turning_of
 
 
@@ -59,9 +59,8 @@ def test_a_jump_of_the_bearing_is_a_manoeuvre_and_a_larger_one_another_thing() -
 def test_a_vehicle_that_yaws_fast_keeps_its_dock(hz: int, told: bool, record_property: Any) -> None:
     """15 degrees to either side in 1.5 s: up to 63 degrees a second."""
     tracked, covered, off_m, ahead, ahead_m = [], [], [], [], []
-    # In how many of the phases it is caught at once depends on them at 5 frames a second.
-    for seed in range(8):
-        vehicle = Yawing(15.0, 1.5, 0.37 * seed)
+    for seed in range(3):
+        vehicle = Yawing(15.0, 1.5, 1.3 * seed)
         attitude = telemetry(vehicle, hz) if told else None
         outcome = followed(vehicle, hz, 8.0, attitude, seed)
         tracked.append(outcome.tracked)
@@ -77,6 +76,22 @@ def test_a_vehicle_that_yaws_fast_keeps_its_dock(hz: int, told: bool, record_pro
         f"{off_mm:.0f} mm off, {np.mean(covered):.2f} in the 95% region; "
         f"0.15 s ahead {1000 * np.nanmedian(ahead_m):.0f} mm and {np.mean(ahead):.2f}",
     )
-    assert np.mean(tracked) > (0.95 if hz == 10 else 0.8)
-    assert np.mean(covered) >= (0.85 if hz == 10 else 0.75)
+    assert np.mean(tracked) > 0.95
+    assert np.mean(covered) >= 0.85
     assert off_mm < 60
+
+
+@pytest.mark.parametrize("phase", range(16))
+def test_it_is_caught_again_in_whatever_phase_it_was_met(phase: int) -> None:
+    """At 5 frames a second it turns by up to 12 degrees from one to the next."""
+    outcome = followed(Yawing(15.0, 1.5, 0.37 * phase), 5, 8.0, None, phase)
+    assert np.mean(outcome.tracked) > 0.95
+
+
+def test_a_miss_makes_a_manoeuvre_likelier_and_never_certain() -> None:
+    assert SELDOM < missed(SELDOM) < 0.2
+    swift = SELDOM
+    for _ in range(100):
+        swift = missed(swift)
+        assert 0 < swift <= 1
+    assert missed(0.0) == 0.0

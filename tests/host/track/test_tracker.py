@@ -409,25 +409,55 @@ def test_whatever_comes_at_whatever_time_the_track_is_sound(
             assert np.linalg.eigvalsh(spread).min() > 0
 
 
-def test_a_row_of_lamps_with_one_more_at_its_end_does_not_move_the_dock() -> None:
+class Row:
     """A dock of four lamps in line, of which the last three and a stranger look just like it."""
-    line = dock_geometry("line", 0.9)
-    tracker, rng = Tracker(line), np.random.default_rng(1)
-    t = np.array([-0.4, 0.1, 4.0])
 
-    def look(time_s: float, place: np.ndarray, evidence: float) -> Track:
-        xy = CAMERA.project(line.points + place) + rng.normal(0, 0.01, (4, 2))
-        poses = estimates(Sighting(line.points, xy, np.full(4, 0.3), CAMERA))
-        places = {n: (float(u), float(v)) for n, (u, v) in zip(line.names, xy, strict=True)}
+    def __init__(self) -> None:
+        self.dock = dock_geometry("line", 0.9)
+        self.tracker, self.rng = Tracker(self.dock), np.random.default_rng(1)
+        self.t = np.array([-0.4, 0.1, 4.0])
+
+    def look(self, time_s: float, evidence: float, aside_m: float = 0.0) -> Track:
+        """At all of the frame, where the dock is found at its place or ``aside_m`` of it."""
+        place = self.t + np.array([aside_m, 0.0, 0.0])
+        xy = CAMERA.project(self.dock.points + place) + self.rng.normal(0, 0.01, (4, 2))
+        poses = estimates(Sighting(self.dock.points, xy, np.full(4, 0.3), CAMERA))
+        places = {n: (float(u), float(v)) for n, (u, v) in zip(self.dock.names, xy, strict=True)}
         what = Found("found", 0.0, (), places, poses[0].pose(), poses, evidence)
-        plan = replace(tracker.plan(time_s), priors=(), everywhere=True)
-        return tracker.update(time_s, plan, what, CAMERA)
+        what = replace(what, sigma_px=(0.3,) * 4)
+        plan = replace(self.tracker.plan(time_s), priors=(), everywhere=True)
+        return self.tracker.update(time_s, plan, what, CAMERA)
 
-    tracks = [look(k / HZ, t, 20.0) for k in range(12)]
+    def off_m(self, track: Track) -> float:
+        """Metres from the dock's place."""
+        assert track.pose is not None
+        return float(np.linalg.norm(np.subtract(track.pose.t, self.t)))
+
+
+def test_a_row_of_lamps_with_one_more_at_its_end_does_not_move_the_dock() -> None:
+    row = Row()
+    tracks = [row.look(k / HZ, 20.0) for k in range(12)]
     assert tracks[-1].pose is not None
-    after = look(1.2, t + np.array([0.3, 0.0, 0.0]), 8.0)
-    assert after.pose is not None
-    assert np.linalg.norm(np.subtract(after.pose.t, t)) < 0.1
+    assert row.off_m(row.look(1.2, 8.0, aside_m=0.3)) < 0.1
+
+
+def test_nor_does_it_move_a_dock_that_is_not_locked_yet() -> None:
+    row = Row()
+    row.look(0.0, 20.0)
+    for k in (1, 2, 3):
+        row.look(k / HZ, 8.0, aside_m=0.3)
+        [candidate] = row.tracker._memory.candidates
+        assert candidate.frames == 1
+    tracks = [row.look(k / HZ, 20.0) for k in range(4, 12)]
+    assert row.off_m(tracks[-1]) < 0.1
+
+
+def test_of_two_such_docks_the_one_with_more_evidence_is_locked() -> None:
+    row = Row()
+    for k in range(3):
+        row.look(k / HZ, 8.0, aside_m=0.3)
+    tracks = [row.look(k / HZ, 20.0) for k in range(4, 20)]
+    assert row.off_m(tracks[-1]) < 0.1
 
 
 def test_a_dock_whose_range_is_not_known_yet_is_locked_without_a_pose() -> None:

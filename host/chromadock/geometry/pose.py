@@ -237,7 +237,7 @@ def projected(
     both = np.empty((len(arms), 2, 6))
     both[..., :3] = by_place
     # The arms' cross product with them, by components: np.cross takes several times as long.
-    (ax, ay, az), (x, y, z) = arms.T[..., None], np.moveaxis(by_place, 2, 0)
+    (ax, ay, az), (x, y, z) = arms.T[..., None], by_place.transpose(2, 0, 1)
     both[..., 3], both[..., 4], both[..., 5] = ay * z - az * y, az * x - ax * z, ax * y - ay * x
     return np.asarray(pixels, np.float64).reshape(-1, 2), both
 

@@ -123,6 +123,19 @@ class Sighting:
         """The same in a dock frame with its origin at ``origin`` (3,), metres, dock frame."""
         return replace(self, points_dock=self.points_dock - origin)
 
+    def errors(
+        self, R: NDArray[np.float64], t: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+        """Reprojection errors (2N,) of a pose (3, 3), (3,) in standard deviations, and their
+        derivatives (2N, 6) as those of ``projected``; None where a marker is behind the camera."""
+        seen = projected(self.points_dock, R, t, self.camera)
+        if seen is None:
+            return None
+        pixels, derivatives = seen
+        error = (pixels - self.pixels) / self.sigma_px[:, None]
+        jacobian = derivatives / self.sigma_px[:, None, None]
+        return error.ravel(), jacobian.reshape(-1, 6)
+
 
 def estimates(sighting: Sighting) -> tuple[Estimate, ...]:
     """All poses that the markers leave open, the better first.
@@ -254,12 +267,10 @@ class _Fit:
 
     @classmethod
     def of(cls, sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) -> _Fit | None:
-        seen = projected(sighting.points_dock, R, t, sighting.camera)
-        if seen is None:
+        errors = sighting.errors(R, t)
+        if errors is None:
             return None
-        pixels, derivatives = seen
-        error = ((pixels - sighting.pixels) / sighting.sigma_px[:, None]).ravel()
-        jacobian = (derivatives / sighting.sigma_px[:, None, None]).reshape(-1, 6)
+        error, jacobian = errors
         return cls(R, t, error, jacobian, float(error @ error))
 
 

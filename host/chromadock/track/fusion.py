@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.pose import Sighting, projected
+from chromadock.geometry.pose import Sighting
 from chromadock.track.motion import ATTITUDE, POSE, RATE, State, rotation, turn_between
 
 Floats = NDArray[np.float64]
@@ -56,28 +56,30 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
     P = state.covariance
     prior = np.linalg.inv(P[POSE, POSE])
     for _ in range(_MAX_ROUNDS):
-        fit = _Fit.of(seen, R, t)
-        if fit is None:
+        errors = _errors(seen, R, t)
+        if errors is None:
             return None
+        error, jacobian = errors
         off = np.concatenate([t - state.t, turn_between(state.R, R)])
-        information = fit.jacobian.T @ fit.jacobian + prior
-        step = -np.linalg.solve(information, fit.jacobian.T @ fit.error + prior @ off)
+        information = jacobian.T @ jacobian + prior
+        step = -np.linalg.solve(information, jacobian.T @ error + prior @ off)
         R, t = rotation(step[3:]) @ R, t + step[:3]
         if step @ information @ step < _CONVERGED:
             break
-    fit = _Fit.of(seen, R, t)
-    if fit is None:
+    errors = _errors(seen, R, t)
+    if errors is None:
         return None
+    error, jacobian = errors
     off = np.concatenate([t - state.t, turn_between(state.R, R)])
-    information = fit.jacobian.T @ fit.jacobian + prior
+    information = jacobian.T @ jacobian + prior
     # What the pose tells of the rest.
     gain = P[:, POSE] @ prior
     left = np.linalg.inv(information) - P[POSE, POSE]
-    chi_square = float(fit.error @ fit.error + off @ prior @ off)
+    chi_square = float(error @ error + off @ prior @ off)
     gained = np.linalg.slogdet(information)[1] - np.linalg.slogdet(prior)[1]
     return Fused(
         state.corrected(gain @ off, P + gain @ left @ gain.T),
-        len(fit.error),
+        len(error),
         chi_square,
         -0.5 * chi_square - 0.5 * float(gained),
     )
@@ -94,23 +96,10 @@ def with_turn_rate(state: State, turn_rate: Floats, variance: float) -> Fused:
     return _fused(state, np.eye(12)[RATE], turn_rate - state.turn_rate, variance * np.eye(3))
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _Fit:
-    """Errors (2N,) of a pose in their standard deviations, and their derivatives (2N, 6)."""
-
-    error: Floats
-    jacobian: Floats
-
-    @classmethod
-    def of(cls, seen: Sighting, R: Floats, t: Floats) -> _Fit | None:
-        there = projected(seen.points_dock, R, t, seen.camera)
-        if there is None:
-            return None
-        pixels, derivatives = there
-        error = (pixels - seen.pixels) / seen.sigma_px[:, None]
-        if not np.abs(error).max() < _RAN_AWAY:
-            return None
-        return cls(error.ravel(), (derivatives / seen.sigma_px[:, None, None]).reshape(-1, 6))
+def _errors(seen: Sighting, R: Floats, t: Floats) -> tuple[Floats, Floats] | None:
+    """The same as ``seen.errors``; None also of a pose that ran away."""
+    errors = seen.errors(R, t)
+    return errors if errors is not None and np.abs(errors[0]).max() < _RAN_AWAY else None
 
 
 def _fused(state: State, H: Floats, off: Floats, covariance: Floats) -> Fused:

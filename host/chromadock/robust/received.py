@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from chromadock import method
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.robust.layout import BORDER
-from chromadock.robust.refine import CLIPPED
+from chromadock.robust.refine import clipped_at
 from chromadock.robust.response import Response, linear
 
 _STEP = 16  # of 1536: much finer than attenuation and crosstalk let a hue be known
@@ -46,9 +46,7 @@ def received_hue(response: Response, xy: NDArray[np.float64]) -> int | None:
 
 def clipped_share(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> float:
     """Share 0..1 of markers at ``xy`` (n, 2) pixels whose core clips in some channel."""
-    height, width = frame_bgr.shape[:2]
-    column, row = np.clip(np.rint(xy).astype(np.intp), 0, [width - 1, height - 1]).T
-    return float(np.mean(frame_bgr[row, column].max(axis=1) >= CLIPPED))
+    return float(np.mean(clipped_at(frame_bgr, xy)))
 
 
 def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | None:

@@ -22,9 +22,10 @@ and the surround of that."""
 WIDTH_PER_SPACING = 0.12
 """At most, of the distance between the closest markers, so that a neighbour's light hardly
 pulls."""
-COARSE_WIDTH_PER_SPACING = 0.24
-"""The same of lamps that were found in cells wider than FINE_CELL: these are large themselves, and
-where they are overexposed a narrower smoothing has its top at the plateau's rim."""
+LARGE_WIDTH_PER_SPACING = 0.24
+"""The same of lamps that were found in cells wider than FINE_CELL, and so are large themselves, and
+of overexposed ones: a narrower smoothing has its top at the plateau's rim, away from a neighbour
+whose halo makes it seem to slope."""
 ROOMY = 2.0
 """Markers with so many times the room of the closest ones, as those out of the others' plane, are
 looked at for themselves; the rest alike, by the closest."""
@@ -129,6 +130,13 @@ def refined(
     return found
 
 
+def clipped_at(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether lamps at (n, 2) pixels are overexposed there, in some channel."""
+    height, width = frame_bgr.shape[:2]
+    column, row = np.clip(np.rint(xy).astype(np.intp), 0, [width - 1, height - 1]).T
+    return np.asarray(frame_bgr[row, column].max(axis=1) >= CLIPPED)
+
+
 def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
     """Which of (n, 2) places have about as little room as any, and which more; and the least
     distance of each to another place, pixels."""
@@ -191,7 +199,8 @@ def _patches(
 ) -> list[_Patch]:
     """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker."""
     reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
-    widest = (WIDTH_PER_SPACING if step == 1 else COARSE_WIDTH_PER_SPACING) * spacing
+    large = step > 1 or clipped_at(frame_bgr, xy).all()
+    widest = (LARGE_WIDTH_PER_SPACING if large else WIDTH_PER_SPACING) * spacing
     widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], widest)]
     middle = int(reach + widths[-1]) + 1
     around = middle + int(CUT_OFF * SURROUND * widths[-1])

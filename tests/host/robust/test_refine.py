@@ -53,6 +53,23 @@ def test_lamps_are_located_without_bias_however_much_they_clip(
     assert np.mean(np.abs(np.concatenate(pulls)) < 1.96) > 0.9
 
 
+@pytest.mark.parametrize("apart_px", [14.0, 16.0, 20.0])
+def test_overexposed_lamps_close_to_each_other_do_not_drive_each_other_apart(
+    apart_px: float,
+) -> None:
+    """As those of a dock at night: their halos run into each other."""
+    rng, spread = np.random.default_rng(6), []
+    for _ in range(12):
+        places = np.array([(120.0, 70.0), (120.0, 70.0 + apart_px)]) + rng.uniform(-1, 1, 2)
+        frame = frame_with(places, 3.0, 4.0, rng)
+        about = places + rng.uniform(-1, 1, (2, 2))
+        found = refined(frame, about, 4, seen(frame).weights[:1], np.ones(2))
+        assert found is not None
+        top, bottom = (tops.xy[0] for tops in found)
+        spread.append(bottom[1] - top[1] - apart_px)
+    assert abs(np.mean(spread)) < 0.03 * apart_px
+
+
 def test_neighbours_do_not_melt_into_one() -> None:
     rng = np.random.default_rng(2)
     places = np.array([(100.0, 70.0), (100.4, 79.3)])

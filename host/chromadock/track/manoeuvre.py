@@ -30,6 +30,7 @@ far dock is seen in two frames of three, one that has moved out of reach in none
 
 _LIKELY = 0.1  # of a manoeuvre: both models are tried
 _SURE = 7.0  # natural logarithm of odds: no frame makes surer than a thousandth
+_SUREST = 1 / (1 + math.exp(-_SURE))
 
 
 def later(swift: float, elapsed_s: float) -> float:
@@ -40,7 +41,7 @@ def later(swift: float, elapsed_s: float) -> float:
 def missed(swift: float) -> float:
     """Probability 0..1 of a manoeuvre after a frame did not show the dock where it was expected:
     a vehicle that manoeuvres loses it MISSES times as often."""
-    return MISSES * swift / (1 - swift + MISSES * swift)
+    return min(MISSES * swift / (1 - swift + MISSES * swift), _SUREST)
 
 
 def decided(
@@ -64,7 +65,7 @@ def decided(
     if hard is None:
         return None if quiet is None else (quiet, swift)
     if quiet is None:
-        return hard, 1 / (1 + math.exp(-_SURE))
+        return hard, _SUREST
     odds = math.log(swift / (1 - swift)) + hard.log_likelihood - quiet.log_likelihood
     after = 1 / (1 + math.exp(-min(max(odds, -_SURE), _SURE)))
     return (hard if after > 0.5 else quiet), after

@@ -23,10 +23,14 @@ LEAST_FOR_A_TRACK = float(2.5 * np.log(10))
 """Of markers that a track looks for, where it has the dock or with one of them out: no pose of a
 frame by itself is told with so little, and a lock takes more from several frames."""
 
+LIKELY = LEAST_EVIDENCE - float(np.log(1.5))
+"""Evidence, before places are exact, of what is likely to have enough with them; measuring is the
+dearest step."""
+
 HOPEFUL = LEAST_EVIDENCE - float(3 * np.log(10))
-"""Evidence worth measuring for.  The search knows places to a quarter of a cell and shapes by a
-normal distribution; exact places may add three decades, most to a near dock that is turned far.
-Less than this finds no more docks, and measuring is the dearest step."""
+"""The same of the best that is not likely, which is measured where no likely one is the dock.  The
+search knows places to a quarter of a cell and shapes by a normal distribution; exact places may add
+three decades, most to a near dock that is turned far."""
 
 PLACE_TOLERANCE = 0.05
 """Of the range: a pose whose place is farther off is wrong."""

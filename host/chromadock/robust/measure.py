@@ -16,6 +16,7 @@ from chromadock.results.detection import Misfit
 from chromadock.robust.acceptance import (
     LEAST_EVIDENCE,
     LEAST_FOR_A_TRACK,
+    LIKELY,
     NO_DOUBT,
     Constellation,
     doubt,
@@ -61,7 +62,11 @@ class Measure:
     def best(self, candidates: list[Candidate]) -> Constellation | None:
         """The dock: the candidate with most evidence, or what it is an image of."""
         accepted: list[Constellation] = []
-        for candidate in candidates[:MAX_TRIALS]:
+        likely = sum(c.evidence >= LIKELY for c in candidates[:MAX_TRIALS])
+        for candidate in candidates[: likely + 1]:
+            # Where no likely one is the dock one more is worth the time.
+            if accepted and candidate.evidence < LIKELY:
+                break
             if any(_overlap(candidate.xy, c.xy, candidate.cell) for c in accepted):
                 continue
             constellation = self._accepted(candidate)

@@ -26,8 +26,8 @@ class TrackedPose:
 class Track:
     """The dock at ``time_s``, by the frames up to it.
 
-    ``state``: one of ``track.states.STATES``.  ``pose``: while the dock is tracked, and after that
-    for as long as its place is known well enough (``track.states.MOST_DOUBT``), else None;
+    ``state``: one of ``track.states.STATES``.  ``pose``: while the dock is tracked, and after that,
+    for as long as its place is known well enough (``track.states``: the most doubt), else None;
     ``alternative``: the next likeliest, until the data have decided.  ``velocity``
     m/s and ``turn_rate`` rad/s: of the dock as seen by a camera that does not turn, and of the
     camera, both in camera axes.  ``age_s``: since the dock was last measured; None before it was.

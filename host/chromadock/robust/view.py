@@ -31,8 +31,9 @@ PEAK_ERROR = 0.25
 """Error of a peak's place, in cells."""
 
 MAX_TRIALS = 6
-"""Candidates of a frame that are measured: bounds the time.  The true one is almost always the
-first; some of the others are the same dock with one marker mistaken, and its image."""
+"""Likely candidates of a frame that are measured, beside one that is not likely: bounds the time.
+The true one is almost always the first; some of the others are the same dock with one marker
+mistaken, and its image."""
 
 LOG_RANGES = float(np.log(20.0))
 """A dock may be met from where it fills the picture to twenty times as far."""

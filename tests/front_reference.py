@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from chromadock.robust.layout import BORDER, Layout
-from chromadock.robust.likeness import coefficients
-from chromadock.robust.response import Response, linear
+from chromadock.robust.frame.layout import BORDER, Layout
+from chromadock.robust.frame.likeness import coefficients
+from chromadock.robust.frame.response import Response, linear
 
 MIN_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 112, 48
 RING = np.array([(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)])

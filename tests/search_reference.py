@@ -11,9 +11,9 @@ from itertools import permutations
 
 import numpy as np
 
-from chromadock.robust import chroma, clutter, evidence
-from chromadock.robust.peaks import MAX_PEAKS, MIN_SNR, Peaks
-from chromadock.robust.shape import FACETS, ShapeModel, Window
+from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, NEIGHBOURHOOD, Peaks
+from chromadock.robust.weigh import chroma, clutter, evidence
+from chromadock.robust.weigh.shape import FACETS, ShapeModel, Window
 
 GATE = 18.0
 VAST = 1e7
@@ -114,7 +114,7 @@ def log_alike(snr: np.ndarray, along: np.ndarray) -> float:
 
 
 def near(z: np.ndarray, area: float, a: int, b: int) -> bool:
-    return bool(abs(z[a] - z[b]) < clutter.NEIGHBOURHOOD * math.sqrt(area))
+    return bool(abs(z[a] - z[b]) < NEIGHBOURHOOD * math.sqrt(area))
 
 
 def rarity(z: np.ndarray, peaks: Peaks, area: float, m: int, others: list[int]) -> float:
@@ -131,7 +131,7 @@ def rarity(z: np.ndarray, peaks: Peaks, area: float, m: int, others: list[int]) 
         strongest = max((height[i] for i in others), default=0.0)
         fall = ((b + strongest) / (b + height[m])) ** a
         expected = min(max(fall, clutter.MOST_FALL), 1.0)
-    disc = math.pi * clutter.NEIGHBOURHOOD**2 * area * float(peaks.inside[m])
+    disc = math.pi * NEIGHBOURHOOD**2 * area * float(peaks.inside[m])
     return -math.log(a / (b + height[m]) * (nearby + 1) / (disc + area / expected))
 
 

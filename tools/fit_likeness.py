@@ -1,4 +1,4 @@
-"""Fits what a lamp looks like beside clutter: host/chromadock/robust/likeness.toml.
+"""Fits what a lamp looks like beside clutter: host/chromadock/robust/frame/likeness.toml.
 
 .venv/bin/python tools/fit_likeness.py [--scenes N] [--looks N] [--photographs FOLDER ...]
 
@@ -23,10 +23,10 @@ from step import ROOT
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.vehicle import vehicle_background
 from chromadock.method import HUE_RANGE
-from chromadock.robust.likeness import FILE, design
-from chromadock.robust.peaks import find_peaks
-from chromadock.robust.response import respond
-from chromadock.robust.shape import focal_px
+from chromadock.robust.frame.likeness import FILE, design
+from chromadock.robust.frame.peaks import find_peaks
+from chromadock.robust.frame.response import respond
+from chromadock.robust.weigh.shape import focal_px
 from chromadock.variety import Backdrops, Half, draw, render
 from chromadock.variety.factors import variety
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from chromadock import CameraModel
 from chromadock.method import HUE_RANGE
-from chromadock.robust.peaks import MIN_SNR
-from chromadock.robust.response import respond
-from chromadock.robust.shape import focal_px
+from chromadock.robust.frame.peaks import MIN_SNR
+from chromadock.robust.frame.response import respond
+from chromadock.robust.weigh.shape import focal_px
 
 
 def standing_out(

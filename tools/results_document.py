@@ -33,7 +33,7 @@ from chromadock.evaluate.rendering import environment, gallery_svg
 from chromadock.evaluate.style import filters
 from chromadock.evaluate.summary import TERNARY
 from chromadock.evaluate.tables import places, ternary_against
-from chromadock.robust.acceptance import PLACE_TOLERANCE
+from chromadock.robust.weigh.acceptance import PLACE_TOLERANCE
 
 LAKE, POOL = "lake", "pool"
 RENDERED, PHOTOGRAPHS = "rendered water", "photographs"

@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import chromadock
 
 ROOT = Path(chromadock.__file__).parent
-ORDER = ("results", "geometry", "robust", "track", "detector")
+ROOMS = "robust"
+"""The folder whose own folders and files are parts by themselves."""
+
+ORDER = (
+    "results",
+    "geometry",
+    "robust.frame",
+    "robust.weigh",
+    "robust.find",
+    "robust.method",
+    "track",
+    "detector",
+)
 """Each may import those before it, and none after it."""
 
 
@@ -25,14 +37,19 @@ def imported(body: list[ast.stmt]) -> Iterator[str]:
             yield from imported([*statement.body, *statement.orelse])
 
 
+def part_of(names: Sequence[str]) -> str:
+    """The part that a module belongs to, by the names that lead to it from the package."""
+    return ".".join(names[: 2 if names[0] == ROOMS else 1])
+
+
 def graph() -> dict[str, set[str]]:
     """Parts of the package, a folder or a file directly in it, and the parts that each imports,
     for type checkers too."""
     parts: dict[str, set[str]] = {}
     for path in sorted(ROOT.rglob("*.py")):
-        part = path.relative_to(ROOT).parts[0].removesuffix(".py")
+        part = part_of(path.relative_to(ROOT).with_suffix("").parts)
         names = [n.split(".") for n in imported(ast.parse(path.read_text("utf-8")).body)]
-        others = {n[1] for n in names if n[0] == "chromadock" and len(n) > 1} - {part}
+        others = {part_of(n[1:]) for n in names if n[0] == "chromadock" and len(n) > 1} - {part}
         parts.setdefault(part, set()).update(others)
     # The package's own file names for type checkers what others find there.
     del parts["__init__"]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from chromadock.evaluate.target import Target
 from chromadock.look import Found
 from chromadock.results.pose import Pose
-from chromadock.robust.acceptance import PLACE_TOLERANCE
+from chromadock.robust.weigh.acceptance import PLACE_TOLERANCE
 from chromadock.rotation import matrix_from_quaternion
 
 CORRECT_PX = 3.0

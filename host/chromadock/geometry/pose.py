@@ -12,6 +12,9 @@ from chromadock.camera import CameraModel
 from chromadock.results.pose import Pose
 from chromadock.rotation import quaternion_from_matrix
 
+MIN_MARKERS = 3
+"""Fewer give no pose."""
+
 _MAX_ROUNDS = 100  # most take five; along the flat valley of a far plane it is slow
 # A round that takes less than this off chi-square moves the pose by a thirtieth of its error.
 _CONVERGED = 1e-3

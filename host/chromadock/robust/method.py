@@ -12,12 +12,12 @@ from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
 from chromadock.look import Found, Look
 from chromadock.results.detection import Blob
-from chromadock.robust.acceptance import MOST_DOUBT, Constellation
-from chromadock.robust.measure import Measure
-from chromadock.robust.peaks import MIN_SNR, Peaks, find_peaks
-from chromadock.robust.received import clipped_share, received_hue
-from chromadock.robust.response import MIN_SIDE, Response, respond
-from chromadock.robust.view import View, upright
+from chromadock.robust.find.measure import Measure
+from chromadock.robust.find.view import View, upright
+from chromadock.robust.frame.peaks import MIN_SNR, Peaks, find_peaks
+from chromadock.robust.frame.received import clipped_share, received_hue
+from chromadock.robust.frame.response import MIN_SIDE, Response, respond
+from chromadock.robust.weigh.acceptance import MOST_DOUBT, Constellation
 from chromadock.stopwatch import Stopwatch
 
 MAX_BLOBS = 16

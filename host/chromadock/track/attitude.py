@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from chromadock.errors import ChromadockError
 from chromadock.mounting import R_BODY_CAMERA_FORWARD, Mounting, mounting_or_default
-from chromadock.robust.shape import ATTITUDE_RAD
+from chromadock.robust.weigh.shape import ATTITUDE_RAD
 
 Floats = NDArray[np.float64]
 

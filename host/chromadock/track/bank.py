@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.geometry.pose import same_rotation
-from chromadock.robust.acceptance import doubt
+from chromadock.robust.weigh.acceptance import doubt
 from chromadock.track.fusion import Fused, with_attitude, with_markers, with_turn_rate
 from chromadock.track.motion import POSE, State, met, turn_between
 from chromadock.track.sight import Sight

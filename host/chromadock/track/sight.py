@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
-from chromadock.geometry.pose import Estimate, Sighting, projected
-from chromadock.robust.guided import MIN_MARKERS
+from chromadock.geometry.pose import MIN_MARKERS, Estimate, Sighting, projected
 
 FLOOR_PX = 0.2
 """Of a marker's error, however bright it is: a colour camera samples red and blue at every other

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 from search_reference import log_alike, rarity
 
-from chromadock.robust.evidence import evidence_of_sets
-from chromadock.robust.peaks import Peaks
+from chromadock.robust.frame.peaks import Peaks
+from chromadock.robust.weigh.evidence import evidence_of_sets
 
 FOUR = np.array([[0, 1, 2, 3]])
 AREA = 1e4

@@ -12,9 +12,9 @@ from front_reference import covariance_of, lights_of, peaks_of, promising_of, sc
 
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.method import HUE_RANGE
-from chromadock.robust.likeness import coefficients, design
-from chromadock.robust.peaks import find_peaks
-from chromadock.robust.response import HUES, linear, respond
+from chromadock.robust.frame.likeness import coefficients, design
+from chromadock.robust.frame.peaks import find_peaks
+from chromadock.robust.frame.response import HUES, linear, respond
 from chromadock.variety import Backdrops, Half, draw, render
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"

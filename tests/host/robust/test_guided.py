@@ -7,8 +7,8 @@ import pytest
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.geometry.pose import Estimate
-from chromadock.robust.guided import Expectation, Guess
-from chromadock.robust.peaks import Peaks
+from chromadock.robust.find.guided import Expectation, Guess
+from chromadock.robust.frame.peaks import Peaks
 
 CAMERA = CameraModel.nominal(640, 480)
 POINTS = DockGeometry.default().points

@@ -14,11 +14,11 @@ from chromadock.colour.marker import marker_hue
 from chromadock.colour.working_image import smooth, working_image
 from chromadock.look import Found, Look
 from chromadock.method import HUE_RANGE
-from chromadock.robust.chroma import SPREAD
-from chromadock.robust.layout import FINE_CELL
+from chromadock.robust.frame.layout import FINE_CELL
+from chromadock.robust.frame.response import HUES, respond
 from chromadock.robust.method import RobustMethod
-from chromadock.robust.response import HUES, respond
-from chromadock.robust.shape import focal_px
+from chromadock.robust.weigh.chroma import SPREAD
+from chromadock.robust.weigh.shape import focal_px
 from chromadock.stopwatch import Stopwatch
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"

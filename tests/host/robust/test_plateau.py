@@ -3,7 +3,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from chromadock.robust.plateau import on_one_thing
+from chromadock.robust.frame.plateau import on_one_thing
 
 FAR = [(300.0, 100.0), (300.0, 130.0)]
 

@@ -9,8 +9,8 @@ from lit import to_linear
 from robust_composites import CAMERA, CROSSTALK, DOCK, Water, add_lamp, photographed
 
 from chromadock.colour.hsv import degrees, rgb_from_hsv
-from chromadock.robust.received import received_hue
-from chromadock.robust.response import respond
+from chromadock.robust.frame.received import received_hue
+from chromadock.robust.frame.response import respond
 
 GREEN_WATER = np.array([60.0, 140.0, 60.0])
 PLACES = np.array([(120.0, 150.0), (520.0, 150.0), (120.0, 330.0), (520.0, 330.0)])

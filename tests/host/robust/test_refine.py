@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from chromadock.robust.refine import refined
-from chromadock.robust.response import Response, respond
+from chromadock.robust.frame.refine import refined
+from chromadock.robust.frame.response import Response, respond
 
 LENS_PX = 1.2
 

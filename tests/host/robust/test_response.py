@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from chromadock.robust.layout import BORDER, FINE_CELL
-from chromadock.robust.peaks import MAX_PEAKS, MIN_SNR, find_peaks
-from chromadock.robust.response import Response, filtered, linear, respond
+from chromadock.robust.frame.layout import BORDER, FINE_CELL
+from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, find_peaks
+from chromadock.robust.frame.response import Response, filtered, linear, respond
 
 FOCAL_PX = 512.0
 RED = 0  # hue

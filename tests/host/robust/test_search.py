@@ -10,17 +10,18 @@ import pytest
 from search_reference import log_looks, sets_of
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.robust import clutter, search
-from chromadock.robust.evidence import (
+from chromadock.robust.find import search
+from chromadock.robust.find.search import Candidates, Search
+from chromadock.robust.frame.peaks import MAX_PEAKS, MAX_PROMISING, MIN_SNR, Peaks
+from chromadock.robust.weigh import clutter
+from chromadock.robust.weigh.evidence import (
     SLOPE,
     SPREAD,
     STRONGEST,
     evidence_of_sets,
     placed_along,
 )
-from chromadock.robust.peaks import MAX_PEAKS, MAX_PROMISING, MIN_SNR, Peaks
-from chromadock.robust.search import Candidates, Search
-from chromadock.robust.shape import ShapeModel
+from chromadock.robust.weigh.shape import ShapeModel
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points

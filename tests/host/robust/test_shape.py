@@ -7,8 +7,8 @@ import pytest
 from search_reference import inside
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.robust.layout import finest_cell
-from chromadock.robust.shape import FACETS, FINEST_SPACING_CELLS, ShapeModel, ideal
+from chromadock.robust.frame.layout import finest_cell
+from chromadock.robust.weigh.shape import FACETS, FINEST_SPACING_CELLS, ShapeModel, ideal
 
 CAMERA = CameraModel.nominal(640, 480)
 RECTANGLE = DockGeometry.default().points

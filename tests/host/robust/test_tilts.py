@@ -11,10 +11,10 @@ import pytest
 from chromadock import CameraModel, DockGeometry
 from chromadock.geometry.many import rotations
 from chromadock.geometry.pose import Estimate, Sighting, estimates
-from chromadock.robust.acceptance import PLACE_TOLERANCE
-from chromadock.robust.placement import PosePrior
-from chromadock.robust.shape import ATTITUDE_RAD
-from chromadock.robust.tilts import doubt_over_tilts
+from chromadock.robust.weigh.acceptance import PLACE_TOLERANCE
+from chromadock.robust.weigh.placement import PosePrior
+from chromadock.robust.weigh.shape import ATTITUDE_RAD
+from chromadock.robust.weigh.tilts import doubt_over_tilts
 
 CAMERA = CameraModel.nominal(640, 480)
 POINTS = DockGeometry.default().points

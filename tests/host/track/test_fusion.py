@@ -8,7 +8,7 @@ from track_truth import CAMERA, DOCK, approach, rotation, sight
 
 from chromadock.mounting import R_BODY_CAMERA_FORWARD as FORWARD
 from chromadock.mounting import Mounting
-from chromadock.robust.shape import ATTITUDE_RAD
+from chromadock.robust.weigh.shape import ATTITUDE_RAD
 from chromadock.track.attitude import Attitude, expected
 from chromadock.track.bank import Bank
 from chromadock.track.fusion import with_attitude, with_markers, with_turn_rate

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.robust.evidence import placed_along
-from chromadock.robust.layout import finest_cell
+from chromadock.robust.frame.layout import finest_cell
+from chromadock.robust.weigh.evidence import placed_along
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.native import ffi, lib
+from chromadock.robust.frame.native import ffi, lib
 
 FINE_CELL = 4
 """Pixels: the lens, the halo and JPEG spread a far marker's light about as wide.  Cells of the

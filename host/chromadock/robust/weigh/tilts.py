@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.geometry.many import errors, rotation_vectors, rotations
-from chromadock.geometry.pose import Estimate, Sighting
-from chromadock.robust.acceptance import share_beyond
-from chromadock.robust.guided import MIN_MARKERS
-from chromadock.robust.placement import PosePrior
+from chromadock.geometry.pose import MIN_MARKERS, Estimate, Sighting
+from chromadock.robust.weigh.acceptance import share_beyond
+from chromadock.robust.weigh.placement import PosePrior
 
 Real = NDArray[np.float64]
 

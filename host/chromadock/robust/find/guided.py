@@ -9,12 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.geometry.pose import Estimate, projected
-from chromadock.robust.evidence import evidence_of_sets, placed_along
-from chromadock.robust.peaks import Peaks
-
-MIN_MARKERS = 3
-"""Fewer give no pose."""
+from chromadock.geometry.pose import MIN_MARKERS, Estimate, projected
+from chromadock.robust.frame.peaks import Peaks
+from chromadock.robust.weigh.evidence import evidence_of_sets, placed_along
 
 HIDDEN = 0.1
 """How often a marker is out or behind something."""

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.robust.guided import HIDDEN, MIN_MARKERS, Guess
-from chromadock.robust.peaks import Peaks
-from chromadock.robust.search import Search
-from chromadock.robust.shape import ShapeModel, focal_px, ideal
+from chromadock.geometry.pose import MIN_MARKERS
+from chromadock.robust.find.guided import HIDDEN, Guess
+from chromadock.robust.find.search import Search
+from chromadock.robust.frame.peaks import Peaks
+from chromadock.robust.weigh.shape import ShapeModel, focal_px, ideal
 
 AMBIGUOUS = float(np.log(2))
 """A name for the places must be so much likelier than any other: three markers with the fourth

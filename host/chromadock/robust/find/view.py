@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
-from chromadock.robust.acceptance import HOPEFUL
-from chromadock.robust.evidence import evidence_of_sets, placed_along
-from chromadock.robust.incomplete import Incomplete
-from chromadock.robust.layout import finest_cell
-from chromadock.robust.peaks import Peaks
-from chromadock.robust.placement import PosePrior
-from chromadock.robust.search import Search
-from chromadock.robust.shape import (
+from chromadock.robust.find.incomplete import Incomplete
+from chromadock.robust.find.search import Search
+from chromadock.robust.frame.layout import finest_cell
+from chromadock.robust.frame.peaks import Peaks
+from chromadock.robust.weigh.acceptance import HOPEFUL
+from chromadock.robust.weigh.evidence import evidence_of_sets, placed_along
+from chromadock.robust.weigh.placement import PosePrior
+from chromadock.robust.weigh.shape import (
     ATTITUDE_RAD,
     FINEST_SPACING_CELLS,
     MIN_SPACING_CELLS,

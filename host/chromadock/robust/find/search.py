@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
-from chromadock.robust.evidence import CONSTANTS, NativePeaks, doubles
-from chromadock.robust.peaks import Peaks
-from chromadock.robust.shape import FACETS, Complex, Real, ShapeModel, Window
+from chromadock.robust.frame.peaks import Peaks
+from chromadock.robust.weigh.evidence import CONSTANTS, NativePeaks, doubles
+from chromadock.robust.weigh.shape import FACETS, Complex, Real, ShapeModel, Window
 
 MAX_SETS = 64
 """Sets that are kept: more than anyone looks at."""

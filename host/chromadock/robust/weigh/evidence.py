@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
-from chromadock.robust import chroma, clutter
-from chromadock.robust.peaks import MAX_PEAKS, MIN_SNR, Peaks
+from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, NEIGHBOURHOOD, Peaks
+from chromadock.robust.weigh import chroma, clutter
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
@@ -47,7 +47,7 @@ CONSTANTS = ffi.new(
         "clutter_supposed": clutter.SUPPOSED,
         "clutter_most_fall": clutter.MOST_FALL,
         "likeness_supposed": clutter.LOOKS_SUPPOSED,
-        "clutter_neighbourhood": clutter.NEIGHBOURHOOD,
+        "clutter_neighbourhood": NEIGHBOURHOOD,
     },
 )
 

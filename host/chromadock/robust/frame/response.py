@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.method import HUE_RANGE
-from chromadock.robust.layout import Layout
-from chromadock.robust.native import ffi, lib, pointer
+from chromadock.robust.frame.layout import Layout
+from chromadock.robust.frame.native import ffi, lib, pointer
 
 GAMMA = 2.2
 """Of cameras whose pictures are meant for screens (sRGB is within 1% of it)."""

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from chromadock import method
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.robust.layout import BORDER
-from chromadock.robust.refine import clipped_at
-from chromadock.robust.response import Response, linear
+from chromadock.robust.frame.layout import BORDER
+from chromadock.robust.frame.refine import clipped_at
+from chromadock.robust.frame.response import Response, linear
 
 _STEP = 16  # of 1536: much finer than attenuation and crosstalk let a hue be known
 _HUES = np.arange(0, method.HUE_RANGE, _STEP)

@@ -13,7 +13,13 @@ from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, s
 from chromadock.geometry.pose import refined as refined_pose
 from chromadock.geometry.profile import widened
 from chromadock.results.detection import Misfit
-from chromadock.robust.acceptance import (
+from chromadock.robust.find.guided import HIDDEN, Expectation, Guess
+from chromadock.robust.find.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
+from chromadock.robust.frame.peaks import Peaks
+from chromadock.robust.frame.plateau import on_one_thing
+from chromadock.robust.frame.refine import Tops, refined
+from chromadock.robust.frame.response import Response
+from chromadock.robust.weigh.acceptance import (
     LEAST_EVIDENCE,
     LEAST_FOR_A_TRACK,
     LIKELY,
@@ -21,15 +27,9 @@ from chromadock.robust.acceptance import (
     Constellation,
     doubt,
 )
-from chromadock.robust.guided import HIDDEN, Expectation, Guess
-from chromadock.robust.peaks import Peaks
-from chromadock.robust.placement import Placement, PosePrior, placement
-from chromadock.robust.plateau import on_one_thing
-from chromadock.robust.refine import Tops, refined
-from chromadock.robust.response import Response
-from chromadock.robust.tilts import doubt_over_tilts
-from chromadock.robust.twin import is_image_of
-from chromadock.robust.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
+from chromadock.robust.weigh.placement import Placement, PosePrior, placement
+from chromadock.robust.weigh.tilts import doubt_over_tilts
+from chromadock.robust.weigh.twin import is_image_of
 
 MISFIT_DECADES = 8.0
 """Evidence of the search's from which on a set of peaks that is no rigid dock deserves a word: no

@@ -11,8 +11,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.layout import FINE_CELL
-from chromadock.robust.response import filtered, linear
+from chromadock.robust.frame.layout import FINE_CELL
+from chromadock.robust.frame.response import filtered, linear
 
 WIDTHS = tuple(1.4 * 2 ** (k / 2) for k in range(7))
 """Standard deviations of the smoothing, half an octave apart, in steps of a pixel for finest

@@ -15,10 +15,6 @@ MOST_FALL = 0.01
 """What outshines all clutter is the rarer the more it does, but never more than so much: there may
 always be something bright that is unlike the rest, a diver's lamp or the sun."""
 
-NEIGHBOURHOOD = 0.18
-"""Radius of the neighbourhood in which a peak's clutter is counted, of the frame's mean side:
-large enough for a few peaks, small enough to tell a surface's band from the water below."""
-
 LOOKS_SUPPOSED = 8.0
 """Peaks that the usual looks of clutter are worth beside those of this frame's own: where these are
 like lamps, looks say little."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from chromadock.camera import CameraModel
-from chromadock.robust.acceptance import Constellation
+from chromadock.robust.weigh.acceptance import Constellation
 
 MAX_LEAN_RAD = np.radians(20.0)
 """Between the dock's own up and the way to the image: twice the dock's usual roll."""

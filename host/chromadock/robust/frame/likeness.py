@@ -16,7 +16,7 @@ from importlib import resources
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.native import ffi, lib, pointer
+from chromadock.robust.frame.native import ffi, lib, pointer
 from chromadock.toml_file import read_toml
 
 FILE = "likeness.toml"

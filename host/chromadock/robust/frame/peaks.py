@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.clutter import NEIGHBOURHOOD
-from chromadock.robust.likeness import LOOKS, coefficients
-from chromadock.robust.native import ffi, lib, pointer
-from chromadock.robust.response import Response
+from chromadock.robust.frame.likeness import LOOKS, coefficients
+from chromadock.robust.frame.native import ffi, lib, pointer
+from chromadock.robust.frame.response import Response
 
 MIN_SNR: float = lib.FRONT_MIN_SNR
 """At the two finest scales; as much more at a coarser one as its cells are wider."""
@@ -20,6 +19,10 @@ MAX_PEAKS: int = lib.FRONT_MAX_PEAKS
 
 MAX_PROMISING: int = lib.FRONT_MAX_PROMISING
 """Of these so many are searched for markers."""
+
+NEIGHBOURHOOD = 0.18
+"""Radius of the neighbourhood in which a peak's clutter is counted, of the frame's mean side:
+large enough for a few peaks, small enough to tell a surface's band from the water below."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,7 @@
+"""How much likelier a set of places is as the dock than as clutter, and how sure its pose is.
+
+``shape`` knows the dock's likely views, ``evidence`` what strengths, colours (``chroma``) and the
+frame's other peaks (``clutter``) say; ``placement`` weighs exact places over all poses.
+``acceptance`` has the thresholds, ``tilts`` the doubt that is left about a pose, and ``twin`` tells
+the dock from its image in the surface.  All evidence is a natural logarithm of a likelihood ratio.
+"""

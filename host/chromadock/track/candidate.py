@@ -19,7 +19,7 @@ LOCK_SPAN_S = 0.1
 
 LOCK_EVIDENCE = 5.0
 """Decades, of the best frame: a dock in a pool has more from 8 m on; clutter, which is not quite
-what robust/acceptance.py supposes of it, seldom has (tests/host/track/test_detector.py prints
+what robust/weigh/acceptance.py supposes of it, seldom has (tests/host/track/test_detector.py prints
 what shaken views of real water come to).  The best, not the sum: frames of one scene are no
 independent evidence."""
 

@@ -12,8 +12,8 @@ dock, so that where it was says no more than a search of the whole frame finds."
 
 MOST_DOUBT = 0.05
 """Probability that the place is off by more than 5 % of the range, beyond which a dock that was
-locked has no pose yet.  Less than for a single frame (``robust.acceptance``): what is wrong with
-one frame of a track is wrong with those after it too."""
+locked has no pose yet.  Less than for a single frame (``robust.weigh.acceptance``): what is wrong
+with one frame of a track is wrong with those after it too."""
 
 MOST_DOUBT_KEPT = 0.15
 """The same of one that has a pose and was just measured: with a marker out it is known less well,

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from track_truth import CAMERA, DOCK, NOTHING, Pose, approach, found, rotation
 
 from chromadock import Attitude, ChromadockError, DockGeometry, Track, Tracker
-from chromadock.geometry.pose import Sighting, estimates, lever
+from chromadock.geometry.pose import lever
 from chromadock.look import Found
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.track.candidate import (
@@ -26,7 +26,6 @@ from chromadock.track.candidate import (
 from chromadock.track.plan import FULL_SEARCH_S, MAX_PRIORS, Plan
 from chromadock.track.states import KEPT_S, STATES, TRACKING_S, state_of
 from chromadock.track.tracker import KEEP_EVIDENCE
-from chromadock.variety.docks import dock_geometry
 
 HZ = 10
 Seen = Callable[[float, Plan], Found]
@@ -407,57 +406,6 @@ def test_whatever_comes_at_whatever_time_the_track_is_sound(
             assert 0 < track.pose.weight <= 1
             spread = np.array(track.pose.covariance).reshape(6, 6)
             assert np.linalg.eigvalsh(spread).min() > 0
-
-
-class Row:
-    """A dock of four lamps in line, of which the last three and a stranger look just like it."""
-
-    def __init__(self) -> None:
-        self.dock = dock_geometry("line", 0.9)
-        self.tracker, self.rng = Tracker(self.dock), np.random.default_rng(1)
-        self.t = np.array([-0.4, 0.1, 4.0])
-
-    def look(self, time_s: float, evidence: float, aside_m: float = 0.0) -> Track:
-        """At all of the frame, where the dock is found at its place or ``aside_m`` of it."""
-        place = self.t + np.array([aside_m, 0.0, 0.0])
-        xy = CAMERA.project(self.dock.points + place) + self.rng.normal(0, 0.01, (4, 2))
-        poses = estimates(Sighting(self.dock.points, xy, np.full(4, 0.3), CAMERA))
-        places = {n: (float(u), float(v)) for n, (u, v) in zip(self.dock.names, xy, strict=True)}
-        what = Found("found", 0.0, (), places, poses[0].pose(), poses, evidence)
-        what = replace(what, sigma_px=(0.3,) * 4)
-        plan = replace(self.tracker.plan(time_s), priors=(), everywhere=True)
-        return self.tracker.update(time_s, plan, what, CAMERA)
-
-    def off_m(self, track: Track) -> float:
-        """Metres from the dock's place."""
-        assert track.pose is not None
-        return float(np.linalg.norm(np.subtract(track.pose.t, self.t)))
-
-
-def test_a_row_of_lamps_with_one_more_at_its_end_does_not_move_the_dock() -> None:
-    row = Row()
-    tracks = [row.look(k / HZ, 20.0) for k in range(12)]
-    assert tracks[-1].pose is not None
-    assert row.off_m(row.look(1.2, 8.0, aside_m=0.3)) < 0.1
-
-
-def test_nor_does_it_move_a_dock_that_is_not_locked_yet() -> None:
-    row = Row()
-    row.look(0.0, 20.0)
-    for k in (1, 2, 3):
-        row.look(k / HZ, 8.0, aside_m=0.3)
-        [candidate] = row.tracker._memory.candidates
-        assert candidate.frames == 1
-    tracks = [row.look(k / HZ, 20.0) for k in range(4, 12)]
-    assert row.off_m(tracks[-1]) < 0.1
-
-
-def test_of_two_such_docks_the_one_with_more_evidence_is_locked() -> None:
-    row = Row()
-    for k in range(3):
-        row.look(k / HZ, 8.0, aside_m=0.3)
-    tracks = [row.look(k / HZ, 20.0) for k in range(4, 20)]
-    assert row.off_m(tracks[-1]) < 0.1
 
 
 def test_a_dock_whose_range_is_not_known_yet_is_locked_without_a_pose() -> None:

@@ -1,313 +1,10 @@
 #include "search.h"
 
+#include "internal/weighing.h"
+
 #include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
-
-/* ---- What strengths and colours say ---- */
-
-/* A peak, and what depends on it alone or on it and all others. */
-typedef struct {
-    double x, y;
-    double likeness, ratio; /* and its exponential */
-    double log_snr, weight; /* of the log strength, one over its variance */
-    double log_density;     /* of the log strength, at its mean */
-    double height;          /* log of the strength over the least known */
-    double around_area;     /* of its neighbourhood, as far as it is in view */
-    double chroma_x, chroma_y, variance;
-    double supposed; /* density of its chroma if nothing is known */
-    /* Sums of the density of its chroma if its colour is another's, and how
-     * many those nearby are: all with itself. */
-    double everywhere, nearby;
-    int32_t around;
-    int32_t stronger; /* how many of those nearby are stronger */
-} peak_t;
-
-typedef struct {
-    const evidence_constants_t *constants;
-    int32_t count;
-    double area, near_square;
-    double heights, ratios; /* sums of all */
-    peak_t peaks[SEARCH_MAX_PEAKS];
-} frame_t;
-
-static double square(double x)
-{
-    return x * x;
-}
-
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-/* Density of Student's distribution in the plane with two degrees of freedom,
- * at a squared distance: noise's middle and glints' tails. */
-static double student(double distance_square, double variance)
-{
-    return variance / (2 * PI * square(variance + 0.5 * distance_square));
-}
-
-/* Density of the chroma of one peak if its colour is the other's. */
-static double same_colour(const peak_t *one, const peak_t *other)
-{
-    double apart = square(one->chroma_x - other->chroma_x) +
-                   square(one->chroma_y - other->chroma_y);
-    return student(apart, one->variance + other->variance);
-}
-
-static bool are_near(const frame_t *frame, const peak_t *one,
-                     const peak_t *other)
-{
-    return square(one->x - other->x) + square(one->y - other->y) <
-           frame->near_square;
-}
-
-static void prepare_frame(frame_t *frame, const evidence_constants_t *constants,
-                          const evidence_peaks_t *peaks)
-{
-    frame->constants = constants;
-    frame->count = peaks->count;
-    frame->area = peaks->area;
-    frame->near_square = square(constants->clutter_neighbourhood) * peaks->area;
-    frame->heights = frame->ratios = 0;
-    for (int32_t i = 0; i < peaks->count; i++) {
-        peak_t *peak = &frame->peaks[i];
-        double noise = 1 / peaks->snr[i];
-        peak->x = peaks->places[2 * i];
-        peak->y = peaks->places[2 * i + 1];
-        peak->likeness = peaks->likeness[i];
-        peak->ratio = exp(peak->likeness);
-        peak->log_snr = log(peaks->snr[i]);
-        peak->weight = 1 / (square(constants->strength_spread) + square(noise));
-        peak->log_density = 0.5 * log(peak->weight / (2 * PI));
-        peak->height = larger(peak->log_snr - log(peaks->least_snr), 0);
-        peak->around_area = PI * frame->near_square * peaks->inside[i];
-        peak->chroma_x = peaks->chroma[2 * i];
-        peak->chroma_y = peaks->chroma[2 * i + 1];
-        peak->variance = square(constants->colour_spread) +
-                         square(constants->colour_noise * noise);
-        peak->supposed =
-            student(square(peak->chroma_x) + square(peak->chroma_y),
-                    square(constants->colour_wide) + peak->variance);
-        peak->everywhere = peak->nearby = same_colour(peak, peak);
-        peak->around = 1;
-        peak->stronger = 0;
-        frame->heights += peak->height;
-        frame->ratios += peak->ratio;
-        for (int32_t j = 0; j < i; j++) {
-            peak_t *other = &frame->peaks[j];
-            double same = same_colour(peak, other);
-            peak->everywhere += same;
-            other->everywhere += same;
-            if (are_near(frame, peak, other)) {
-                peak->nearby += same;
-                other->nearby += same;
-                peak->around++;
-                other->around++;
-                peak->stronger++;
-            }
-        }
-    }
-}
-
-/* Sums over the members of a set for the regression of their log strengths v
- * on their places along the dock t, value = common + slope t: with weights u
- * they are of u, u t, u t^2, u v, u v t, u v^2, and of the log densities. */
-typedef struct {
-    double u, ut, utt, uv, uvt, uvv, log_density;
-} strengths_t;
-
-static void add_strength(strengths_t *sums, double value, double weight,
-                         double log_density, double along)
-{
-    sums->u += weight;
-    sums->ut += weight * along;
-    sums->utt += weight * along * along;
-    sums->uv += weight * value;
-    sums->uvt += weight * value * along;
-    sums->uvv += weight * value * value;
-    sums->log_density += log_density;
-}
-
-/* Log density of the log strengths of markers: the integral over the common
- * value, which is evenly spread, and the slope, which is normal, of the product
- * of normal densities about them. */
-static double log_alike(const evidence_constants_t *constants,
-                        const strengths_t *s)
-{
-    double utt = s->utt + 1 / square(constants->strength_slope);
-    double determinant = s->u * utt - s->ut * s->ut;
-    double explained = (utt * s->uv * s->uv - 2 * s->ut * s->uv * s->uvt +
-                        s->u * s->uvt * s->uvt) /
-                       determinant;
-    double scale = constants->strength_slope * constants->strength_log_range;
-    return s->log_density - 0.5 * (s->uvv - explained) -
-           0.5 * log(determinant * square(scale) / (2 * PI));
-}
-
-/* Minus the log density of clutter, a square pixel and unit of log strength,
- * at a peak of some height that `stronger` and `nearby` others exceed, all
- * over and nearby, among `count` others whose heights add up to `total` and
- * are `strongest` at most.
- *
- * Heights are taken to be exponential, with an exponent whose gamma
- * distribution was updated by those of the others: then the share beyond a
- * height y is (b / (b + y))^a (Lomax, J. Am. Stat. Assoc. 49 (1954) 847), and
- * the density there is a / (b + y) times the number beyond it.  That number is
- * the local count, together with one more peak in as much area as holds one
- * stronger peak in all the frame: the mean of a gamma distribution after that
- * count.  What outshines all others is the rarer for it, to a limit. */
-static double rarity(const frame_t *frame, const peak_t *peak, int32_t stronger,
-                     int32_t nearby, int32_t count, double total,
-                     double strongest)
-{
-    const evidence_constants_t *constants = frame->constants;
-    double height = peak->height;
-    double a = constants->clutter_supposed + (count > 0 ? count : 0);
-    double b =
-        constants->clutter_supposed / constants->clutter_exponent + total;
-    double expected = stronger + 1;
-    if (stronger == 0) {
-        double fall = pow((b + strongest) / (b + height), a);
-        expected = larger(fall < 1 ? fall : 1, constants->clutter_most_fall);
-    }
-    double density =
-        (nearby + 1) / (peak->around_area + frame->area / expected);
-    return -log(a / (b + height) * density);
-}
-
-/* Density of clutter's chroma at a peak: the mean of the densities about the
- * others nearby (Parzen, Ann. Math. Statist. 33 (1962) 1065), as of rocks or
- * of a wall; as far as there are few, about those everywhere; and where these
- * are few, what is supposed. */
-static double clutter_colour(const frame_t *frame, const peak_t *peak,
-                             double everywhere, int32_t count, double nearby,
-                             int32_t around)
-{
-    double supposed = frame->constants->colour_supposed;
-    double overall = (larger(everywhere, 0) + supposed * peak->supposed) /
-                     (count + supposed);
-    return (larger(nearby, 0) + supposed * overall) / (around + supposed);
-}
-
-/* Likelihood ratio that a peak has a marker's colour, which makes its chroma
- * so dense, where clutter's is so dense. */
-static double colour_ratio(const frame_t *frame, double same, double clutter)
-{
-    double disturbed = frame->constants->colour_disturbed;
-    return (1 - disturbed) * same / clutter + disturbed;
-}
-
-/* Sum of the rarities of a set, whose members are no clutter. */
-static double set_rarity(const frame_t *frame, int32_t size,
-                         const int32_t *members)
-{
-    int32_t stronger[SEARCH_MAX_PEAKS], nearby[SEARCH_MAX_PEAKS], first = 0;
-    double total = frame->heights, sum = 0;
-    for (int32_t i = 0; i < size; i++) {
-        const peak_t *peak = &frame->peaks[members[i]];
-        stronger[i] = members[i];
-        nearby[i] = peak->stronger;
-        for (int32_t j = 0; j < size; j++)
-            if (members[j] < members[i]) {
-                stronger[i]--;
-                nearby[i] -= are_near(frame, peak, &frame->peaks[members[j]]);
-            }
-        total -= peak->height;
-        first += stronger[i] == 0;
-    }
-    /* The strongest of the others comes after those members that none of them
-     * is stronger than. */
-    double strongest = first < frame->count ? frame->peaks[first].height : 0;
-    for (int32_t i = 0; i < size; i++)
-        sum += rarity(frame, &frame->peaks[members[i]], stronger[i], nearby[i],
-                      frame->count - size, total, strongest);
-    return sum;
-}
-
-/* Log likelihood ratio that a set has one colour in common: of the mean of the
- * ratios with each member for the one that has the dock's. */
-static double set_colour(const frame_t *frame, int32_t size,
-                         const int32_t *members)
-{
-    double clutter[SEARCH_MAX_PEAKS], sum = 0;
-    for (int32_t j = 0; j < size; j++) {
-        const peak_t *peak = &frame->peaks[members[j]];
-        double everywhere = peak->everywhere, nearby = peak->nearby;
-        int32_t around = peak->around;
-        for (int32_t i = 0; i < size; i++) {
-            const peak_t *other = &frame->peaks[members[i]];
-            double same = same_colour(peak, other);
-            everywhere -= same;
-            if (are_near(frame, peak, other)) {
-                nearby -= same;
-                around--;
-            }
-        }
-        clutter[j] = clutter_colour(frame, peak, everywhere,
-                                    frame->count - size, nearby, around);
-    }
-    for (int32_t i = 0; i < size; i++) {
-        double product = 1;
-        for (int32_t j = 0; j < size; j++)
-            if (j != i)
-                product *= colour_ratio(frame,
-                                        same_colour(&frame->peaks[members[i]],
-                                                    &frame->peaks[members[j]]),
-                                        clutter[j]);
-        sum += product;
-    }
-    return log(sum / size);
-}
-
-/* Log of the mean likelihood ratio of the clutter's looks, where `count` peaks'
- * add up to `ratios`.  Over clutter of all kinds that mean is 1; where the
- * frame's own looks like lamps, a lamp's looks say so much less. */
-static double log_mean_ratio(const frame_t *frame, int32_t count, double ratios)
-{
-    double supposed = frame->constants->likeness_supposed;
-    return log((supposed + larger(ratios, 0)) /
-               (supposed + (count > 0 ? count : 0)));
-}
-
-static double set_evidence(const frame_t *frame, int32_t size,
-                           const int32_t *members, const double *along)
-{
-    strengths_t strengths = {0};
-    double likeness = 0, ratios = frame->ratios;
-    for (int32_t i = 0; i < size; i++) {
-        const peak_t *peak = &frame->peaks[members[i]];
-        ratios -= peak->ratio;
-        add_strength(&strengths, peak->log_snr, peak->weight, peak->log_density,
-                     along[i]);
-        likeness += peak->likeness;
-    }
-    likeness -= size * log_mean_ratio(frame, frame->count - size, ratios);
-    return log_alike(frame->constants, &strengths) + likeness +
-           set_rarity(frame, size, members) + set_colour(frame, size, members);
-}
-
-int32_t evidence_of_sets(const evidence_constants_t *constants,
-                         const evidence_peaks_t *peaks, int32_t sets,
-                         int32_t size, const int32_t *members,
-                         const double *along, double *evidence)
-{
-    frame_t frame;
-    if (peaks->count > SEARCH_MAX_PEAKS || size > peaks->count)
-        return -1;
-    prepare_frame(&frame, constants, peaks);
-    for (int32_t i = 0; i < sets; i++)
-        evidence[i] =
-            set_evidence(&frame, size, members + (ptrdiff_t)i * size, along);
-    return 0;
-}
-
-/* ---- The search ---- */
 
 /* Peaks here are the promising ones, numbered from 0. */
 typedef struct {
@@ -354,9 +51,10 @@ static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
     double most = frame->heights - peak->height, least = frame->heights;
     for (int32_t i = 0; i < size; i++)
         least -= frame->peaks[i].height;
-    return larger(rarity(frame, peak, stronger, nearby, count, most, strongest),
-                  rarity(frame, peak, stronger, nearby, count, larger(least, 0),
-                         strongest));
+    return larger(
+        evidence_rarity(frame, peak, stronger, nearby, count, most, strongest),
+        evidence_rarity(frame, peak, stronger, nearby, count, larger(least, 0),
+                        strongest));
 }
 
 /* Density of clutter's chroma at a peak at least: if all others in a set of so
@@ -367,9 +65,9 @@ static double least_clutter_colour(const frame_t *frame, const peak_t *peak,
     double itself = same_colour(peak, peak);
     double others =
         (size - 1) * student(0, peak->variance + frame->peaks[0].variance);
-    return clutter_colour(frame, peak, peak->everywhere - itself - others,
-                          frame->count - size, peak->nearby - itself - others,
-                          peak->around - 1);
+    return evidence_clutter_colour(
+        frame, peak, peak->everywhere - itself - others, frame->count - size,
+        peak->nearby - itself - others, peak->around - 1);
 }
 
 static int descending(const void *a, const void *b)
@@ -384,13 +82,14 @@ static void prepare_bounds(search_t *search)
     const evidence_constants_t *constants = frame->constants;
     int32_t markers = search->dock->markers;
     /* The clutter looks least like lamps without those that do most. */
-    double sorted[SEARCH_MAX_PEAKS] = {0}, ratios = frame->ratios;
+    double sorted[EVIDENCE_MAX_PEAKS] = {0}, ratios = frame->ratios;
     for (int32_t i = 0; i < frame->count; i++)
         sorted[i] = frame->peaks[i].ratio;
     qsort(sorted, (size_t)frame->count, sizeof(double), descending);
     for (int32_t i = 0; i < markers; i++)
         ratios -= sorted[i];
-    double usual = log_mean_ratio(frame, frame->count - markers, ratios);
+    double usual =
+        evidence_log_mean_ratio(frame, frame->count - markers, ratios);
     for (int32_t i = 0; i < search->count; i++) {
         search->rarity[i] = peak_at(search, i)->likeness - usual +
                             most_rarity(frame, search->promising[i], markers);
@@ -407,7 +106,8 @@ static void prepare_bounds(search_t *search)
         double clutter = least_clutter_colour(frame, peak, markers);
         for (int32_t i = 0; i < search->count; i++) {
             double same = same_colour(peak_at(search, i), peak);
-            double ratio = i == j ? 0 : log(colour_ratio(frame, same, clutter));
+            double ratio =
+                i == j ? 0 : log(evidence_colour_ratio(frame, same, clutter));
             search->colour[i][j] = ratio;
             search->nearest_colour[i] =
                 larger(search->nearest_colour[i], ratio);
@@ -420,7 +120,7 @@ static void prepare_bounds(search_t *search)
     for (int32_t k = 1; k <= markers; k++) {
         add_strength(&strengths, 0, weight, log_density,
                      search->dock->along[k - 1]);
-        all = log_alike(constants, &strengths);
+        all = evidence_log_alike(constants, &strengths);
         search->strengths_left[k] = -all;
     }
     for (int32_t k = 1; k <= markers; k++)
@@ -444,7 +144,7 @@ static double hoped_looks(search_t *search, int32_t k,
         colour = larger(colour, common);
         rarity += search->rarity[search->set[i]];
     }
-    return log_alike(search->frame.constants, strengths) +
+    return evidence_log_alike(search->frame.constants, strengths) +
            search->strengths_left[k] + rarity + colour;
 }
 
@@ -457,7 +157,7 @@ static void keep(search_t *search, double place)
     for (int32_t k = 0; k < markers; k++)
         set[k] = search->promising[search->set[k]];
     double looks =
-        set_evidence(&search->frame, markers, set, search->dock->along);
+        evidence_of_set(&search->frame, markers, set, search->dock->along);
     double evidence = place + looks;
     if (evidence < search->least)
         return;
@@ -673,12 +373,12 @@ int32_t search_find(const evidence_constants_t *constants,
 {
     search_t search;
     *weighed = 0;
-    if (peaks->count > SEARCH_MAX_PEAKS ||
+    if (peaks->count > EVIDENCE_MAX_PEAKS ||
         promising_count > SEARCH_MAX_PROMISING)
         return -1;
     if (promising_count < dock->markers || most_sets < 1)
         return 0;
-    prepare_frame(&search.frame, constants, peaks);
+    evidence_prepare(&search.frame, constants, peaks);
     search.dock = dock;
     search.least = least;
     search.count = promising_count;

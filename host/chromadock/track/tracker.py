@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -151,7 +152,7 @@ class Tracker:
             return bank.facing(R, covariance / share) if faced else bank
 
         swift = later(locked.swift, elapsed_s)
-        return Prediction(locked, predicted, swift, time_s if faced else memory.faced_s)
+        return Prediction(locked, cache(predicted), swift, time_s if faced else memory.faced_s)
 
     def _followed(
         self,

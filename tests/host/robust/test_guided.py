@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from chromadock import CameraModel, DockGeometry
-from chromadock.geometry.pose import Estimate
+from chromadock.geometry.many import rotations
+from chromadock.geometry.pose import Estimate, Sighting, estimates
 from chromadock.robust.find.guided import Expectation, Guess
 from chromadock.robust.frame.peaks import Peaks
 
@@ -95,3 +96,22 @@ def test_a_speck_at_the_border_is_no_marker_that_is_beyond_it() -> None:
     shown = np.where(outside[:, None], np.column_stack([np.full(4, 637.0), places[:, 1]]), places)
     four = replace(peaks(shown=[0, 1, 2, 3], specks=0), xy=shown)
     assert guided(POINTS, beyond, four, 1.0) is None
+
+
+def test_both_poses_of_a_plane_expect_the_markers_at_the_same_places() -> None:
+    """And a pose a hand's breadth aside expects them elsewhere."""
+    [turned] = rotations(np.array([[0.0, 0.35, 0.0]]))
+    far = CAMERA.project(POINTS @ turned.T + np.array([0.1, 0.0, 6.0]))
+    sighting = Sighting(POINTS, far, np.full(4, 0.3), CAMERA)
+    first, second = (Expectation(POINTS, pose, CAMERA) for pose in estimates(sighting))
+    assert first.like(second)
+    aside = replace(PRIOR, t=PRIOR.t + np.array([0.1, 0.0, 0.0]))
+    assert not Expectation(POINTS, aside, CAMERA).like(Expectation(POINTS, PRIOR, CAMERA))
+
+
+def test_the_spacing_is_that_of_the_closest_markers() -> None:
+    pixels = CAMERA.project(POINTS @ R.T + PRIOR.t)
+    apart = [np.linalg.norm(a - b) for k, a in enumerate(pixels) for b in pixels[:k]]
+    assert Expectation(POINTS, PRIOR, CAMERA).spacing_px == pytest.approx(min(apart))
+    behind = replace(PRIOR, t=-PRIOR.t)
+    assert Expectation(POINTS, behind, CAMERA).spacing_px == 0.0

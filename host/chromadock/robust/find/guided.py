@@ -16,6 +16,10 @@ from chromadock.robust.weigh.evidence import evidence_of_sets, placed_along
 HIDDEN = 0.1
 """How often a marker is out or behind something."""
 
+SAME_PLACE_PX = 0.5
+"""Pixels.  Two poses that have every marker within this of each other expect the same peaks: a
+peak's own place is no better known."""
+
 # Chi-square with two degrees of freedom that true markers exceed in 0.1%.
 _GATE = 13.8
 # The same that they exceed in 5%: a marker so far from where the others have it may be none.
@@ -56,6 +60,21 @@ class Expectation:
             # What shines at the border is no marker beyond it, but what is left of its halo.
             size = np.array([camera.width, camera.height])
             self._inside = ((seen[0] > 0) & (seen[0] < size - 1)).all(axis=1)
+
+    def like(self, other: Expectation) -> bool:
+        """Whether both have the markers at the same places."""
+        if self._places is None or other._places is None:
+            return self._places is other._places
+        return bool(np.abs(self._places - other._places).max() < SAME_PLACE_PX)
+
+    @property
+    def spacing_px(self) -> float:
+        """Pixels between the two markers that are closest to each other; 0 behind the camera."""
+        if self._places is None:
+            return 0.0
+        apart = np.linalg.norm(self._places[:, None] - self._places, axis=2)
+        np.fill_diagonal(apart, np.inf)
+        return float(apart.min())
 
     def guess(self, peaks: Peaks, sigma_px: float) -> Guess | None:
         """The best set of all markers, or of all but one, among peaks located to ``sigma_px``.

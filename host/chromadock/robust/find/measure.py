@@ -28,6 +28,7 @@ from chromadock.robust.weigh.acceptance import (
     doubt,
 )
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
+from chromadock.robust.weigh.shape import MIN_SPACING_CELLS
 from chromadock.robust.weigh.tilts import doubt_over_tilts
 from chromadock.robust.weigh.twin import is_image_of
 
@@ -84,9 +85,17 @@ class Measure:
         With the poses downhill of the track's: which of them is right is the track's to say.
         """
         guesses: list[tuple[Guess, int, Peaks]] = []
+        expectations: list[Expectation] = []
         for prior in priors:
             expectation = Expectation(self.view.points, prior, self.view.camera)
+            # The two poses of a plane differ in what they are, not in where the markers are.
+            if any(expectation.like(other) for other in expectations):
+                continue
+            expectations.append(expectation)
+            spacing_px = expectation.spacing_px
             for cell, found in peaks.items():
+                if spacing_px < MIN_SPACING_CELLS * cell:
+                    break  # two markers are one peak in cells so wide
                 guess = expectation.guess(found, PEAK_ERROR * cell)
                 if guess is not None and guess.evidence >= LEAST_FOR_A_TRACK:
                     guesses.append((guess, cell, found))

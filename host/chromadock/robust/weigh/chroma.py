@@ -4,7 +4,7 @@ All markers of a dock shine in one colour, whatever water and camera make of it;
 many.  The colour of a peak is told by its chroma: the two angles, where the frame's noise is
 the same in all colours, between the light that it adds and the light that is looked for.  How
 far the water turns the markers' colour need not be known: only that it turns all alike.  What a
-set's colours say is computed by ``set_colour`` in ``host/native/search.c``.
+set's colours say is computed by ``set_colour`` in ``host/native/evidence.c``.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Clutter is modelled as a Poisson process over place and log strength.  Both its local density and
 the tail of its strengths are measured on the frame itself, on the peaks that are not in question:
-see ``rarity`` in ``host/native/search.c``.
+see ``evidence_rarity`` in ``host/native/evidence.c``.
 """
 
 from __future__ import annotations

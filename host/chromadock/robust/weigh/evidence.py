@@ -3,7 +3,7 @@
 All markers shine alike: log strengths scatter little about a common value of which nothing is
 known, and about a slope from one end of the dock to the other, since the end that is turned
 away is seen through more water.  ``chroma`` says what is supposed of colours, ``clutter`` what
-of peaks that are no dock's; ``host/native/search.c`` weighs them.
+of peaks that are no dock's; ``host/native/evidence.c`` weighs them.
 """
 
 from __future__ import annotations

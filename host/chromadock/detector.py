@@ -204,6 +204,7 @@ class Detector:
             evidence=found.evidence,
             track=track,
             clipped=found.clipped,
+            stops_over=found.stops_over,
             misfit=found.misfit,
             timing_ms=watch.stop(),
         )

@@ -64,8 +64,8 @@ class Found:
     ``sigma_px``: standard deviations of the markers' places, in their order; ``estimates``: both
     poses, with their information; both for a track.  ``evidence``: decades by which
     the dock explains what was seen better than clutter does; None where a method does not
-    weigh it.  ``hue`` 0..1535: of the light that the markers add, as received; ``clipped`` and
-    ``misfit``: see ``Detection``.
+    weigh it.  ``hue`` 0..1535: of the light that the markers add, as received; ``clipped``,
+    ``stops_over`` and ``misfit``: see ``Detection``.
     """
 
     state: str
@@ -77,6 +77,7 @@ class Found:
     evidence: float | None = None
     hue: int | None = None
     clipped: float | None = None
+    stops_over: float | None = None
     misfit: Misfit | None = None
     sigma_px: tuple[float, ...] = ()
 

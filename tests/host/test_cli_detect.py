@@ -123,7 +123,7 @@ def test_json_is_one_object_a_frame_and_nothing_else_on_standard_output(folder):
     assert set(records[0]) == {
         "file", "frame", "time_s", "state", "found", "background", "marker", "observed",
         "passed_fraction", "blobs", "markers", "pose", "evidence", "clipped",
-        "misfit", "track", "timing_ms",
+        "stops_over", "misfit", "track", "timing_ms",
     }  # fmt: skip
     assert records[0]["track"] is None
     assert records[0]["background"]["rgb"] == pytest.approx(WATER[::-1], abs=4)

@@ -83,9 +83,11 @@ class Report:
         if detection.clipped is not None and detection.clipped > _MOST_CLIPPED:
             self._clipped += 1
             if self._clipped == _COMPARED_FRAMES:
+                stops = max(round(detection.stops_over or 0.0), 1)
                 self._aside(
-                    "warning: most lamps are overexposed: shorten this camera's exposure or dim "
-                    "the dock, for a range that is more exact"
+                    f"warning: most lamps are overexposed: shorten this camera's exposure by about "
+                    f"{stops} stop{'s' if stops > 1 else ''} (to 1/{2**stops}), or dim the dock, "
+                    "for a range that is more exact"
                 )
         if detection.misfit is not None:
             self._misfits += 1

@@ -73,7 +73,10 @@ class Detection:
     share of pixels that stand out in the markers' colour, 0..1; ``observed`` the RGB, 0..255,
     that the camera should see of a marker, None where that may be any; ``markers`` maps the
     dock's marker names to their pixel; ``track`` what all frames so far tell, at this one's time
-    (None where frames are treated alone); ``timing_ms`` milliseconds by stage, with ``total``.
+    (None where frames are treated alone); ``clipped`` the share of the markers, 0..1, whose core
+    is overexposed, and ``stops_over`` by how many stops the exposure should be shorter for the
+    median of those (see ``overexposure.stops_over``); ``timing_ms`` milliseconds by stage, with
+    ``total``.
     """
 
     state: str
@@ -87,6 +90,7 @@ class Detection:
     evidence: float | None = None
     track: Track | None = None
     clipped: float | None = None
+    stops_over: float | None = None
     misfit: Misfit | None = None
     timing_ms: dict[str, float] = field(default_factory=dict)
 
@@ -122,6 +126,7 @@ class Detection:
             "pose": None if self.pose is None else _pose_dict(self.pose),
             "evidence": _rounded(self.evidence, 2),
             "clipped": _rounded(self.clipped, 3),
+            "stops_over": _rounded(self.stops_over, 1),
             "misfit": None
             if self.misfit is None
             else {

@@ -14,8 +14,9 @@ from chromadock.look import Found, Look
 from chromadock.results.detection import Blob
 from chromadock.robust.find.measure import Measure
 from chromadock.robust.find.view import View, upright
+from chromadock.robust.frame.overexposure import clipped_at, stops_over
 from chromadock.robust.frame.peaks import MIN_SNR, Peaks, find_peaks
-from chromadock.robust.frame.received import clipped_share, received_hue
+from chromadock.robust.frame.received import received_hue
 from chromadock.robust.frame.response import MIN_SIDE, Response, respond
 from chromadock.robust.weigh.acceptance import MOST_DOUBT, Constellation
 from chromadock.stopwatch import Stopwatch
@@ -109,7 +110,8 @@ class RobustMethod:
             estimates=poses,
             evidence=best.evidence / float(np.log(10)),
             hue=received_hue(response, best.xy),
-            clipped=clipped_share(frame_bgr, best.xy),
+            clipped=float(clipped_at(frame_bgr, best.xy).mean()),
+            stops_over=stops_over(frame_bgr, best.xy),
             sigma_px=tuple(best.sigma_px.tolist()),
         )
 

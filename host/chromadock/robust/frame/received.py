@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from chromadock import method
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.robust.frame.layout import BORDER
-from chromadock.robust.frame.refine import clipped_at
 from chromadock.robust.frame.response import Response, linear
 
 _STEP = 16  # of 1536: much finer than attenuation and crosstalk let a hue be known
@@ -42,11 +41,6 @@ def received_hue(response: Response, xy: NDArray[np.float64]) -> int | None:
         if hue is not None:
             return hue
     return None
-
-
-def clipped_share(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> float:
-    """Share 0..1 of markers at ``xy`` (n, 2) pixels whose core clips in some channel."""
-    return float(np.mean(clipped_at(frame_bgr, xy)))
 
 
 def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | None:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.robust.frame.layout import FINE_CELL
+from chromadock.robust.frame.overexposure import CLIPPED, clipped_at
 from chromadock.robust.frame.response import filtered, linear
 
 WIDTHS = tuple(1.4 * 2 ** (k / 2) for k in range(7))
@@ -38,9 +39,6 @@ SHIFT_PER_SPACING = 1 / 3
 MAX_SHIFT = 6.0
 """A lamp's top is looked for within this of where it was supposed: steps; half the diagonal of the
 plateau of a lamp that fills 2 x 2 cells."""
-
-CLIPPED = 250
-"""Pixels of such a value, of 255, may have been brighter: JPEG takes some off."""
 
 SAMPLING = 0.17
 """Standard error in pixels that a sensor's colour mosaic leaves the sharpest lamp: of red and of
@@ -128,13 +126,6 @@ def refined(
             return None
         found.append(places)
     return found
-
-
-def clipped_at(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether lamps at (n, 2) pixels are overexposed there, in some channel."""
-    height, width = frame_bgr.shape[:2]
-    column, row = np.clip(np.rint(xy).astype(np.intp), 0, [width - 1, height - 1]).T
-    return np.asarray(frame_bgr[row, column].max(axis=1) >= CLIPPED)
 
 
 def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:

@@ -1,0 +1,72 @@
+"""Lamps that are brighter than the camera can tell, and by how much."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chromadock.robust.frame.response import GAMMA
+
+CLIPPED = 250
+"""Pixels of such a value, of 255, may have been brighter: JPEG takes some off."""
+
+MOST_STOPS = 8.0
+"""More is not told: the edge of a plateau is then sharper than pixels show."""
+
+LARGEST_ROOM_PX = 80
+"""Half the side of the square about a lamp that is looked at, where no other lamp is nearer."""
+
+
+def clipped_at(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether lamps at (n, 2) pixels are overexposed there, in some channel."""
+    height, width = frame_bgr.shape[:2]
+    column, row = np.clip(np.rint(xy).astype(np.intp), 0, [width - 1, height - 1]).T
+    return np.asarray(frame_bgr[row, column].max(axis=1) >= CLIPPED)
+
+
+def stops_over(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> float:
+    """By how many stops the exposure should be shorter for lamps at ``xy`` not to clip.
+
+    The light about a lamp is taken to fall exponentially with the distance from its centre, as
+    scattered light does (Voss, Applied Optics 30 (1991) 2647).  It halves between the edge of
+    the plateau, at radius r, and that of all that is half as bright, at radius r'; so it doubles
+    r / (r' - r) times from the edge to the centre.  Both radii come from the areas.  A lamp with
+    a sharp edge looks brighter than it is by that, one that is much too bright less so.
+
+    Parameters
+    ----------
+    frame_bgr : (H, W, 3) uint8.
+    xy : (n, 2) pixels.
+
+    Returns
+    -------
+    The median of the lamps that clip, 0..MOST_STOPS; 0 where none does.
+    """
+    clipped = clipped_at(frame_bgr, xy)
+    if not clipped.any():
+        return 0.0
+    apart = np.linalg.norm(xy[:, None] - xy, axis=2)
+    np.fill_diagonal(apart, 2 * LARGEST_ROOM_PX)
+    room = np.minimum(apart.min(axis=1) / 2, LARGEST_ROOM_PX)
+    lamps = zip(xy[clipped], room[clipped], strict=True)
+    return float(np.median([_stops_of(frame_bgr, place, float(half)) for place, half in lamps]))
+
+
+def _stops_of(frame_bgr: NDArray[np.uint8], place: NDArray[np.float64], half: float) -> float:
+    """The same of one lamp, in the square of ``half`` the side about it."""
+    height, width = frame_bgr.shape[:2]
+    first = np.clip(np.floor(place - half), 0, [width - 1, height - 1]).astype(int)
+    end = np.ceil(place + half).astype(int) + 1
+    about = frame_bgr[first[1] : end[1], first[0] : end[0]].reshape(-1, 3)
+    plateau = np.count_nonzero(about >= CLIPPED, axis=0)
+    channel = int(plateau.argmax())
+    if plateau[channel] == 0:
+        return 0.0
+    light = about[:, channel]
+    if light.min() >= CLIPPED:
+        return MOST_STOPS  # nothing about it tells more
+    behind, full = (float(v / 255) ** GAMMA for v in (light.min(), CLIPPED))
+    halved = 255 * (behind + (full - behind) / 2) ** (1 / GAMMA)
+    inner, outer = np.sqrt([plateau[channel], np.count_nonzero(light >= halved)])
+    doublings = min(inner / max(outer - inner, inner / MOST_STOPS), MOST_STOPS)
+    return float(np.log2((behind + (full - behind) * 2**doublings) / full))

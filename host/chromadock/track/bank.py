@@ -22,8 +22,9 @@ from chromadock.track.sight import Sight
 
 Floats = NDArray[np.float64]
 
-MAX_HYPOTHESES = 3
-"""Two planar poses, and one on its way from the one to the other."""
+MAX_HYPOTHESES = 5
+"""The four poses that three markers leave open (Haralick et al., International Journal of Computer
+Vision 13 (1994) 331), and one on its way from one to another."""
 
 FORGOTTEN = 1e-3
 """Less likely hypotheses are dropped: the data have decided."""
@@ -36,9 +37,10 @@ REBORN = 0.05
 """Probability that the true pose is one that had been dropped, or never came up, when a frame
 leaves one open that no hypothesis covers."""
 
-# Not covered: 2.4 standard deviations of the difference, squared.  Farther, and from afar the
-# other pose would never come back, its errors being as large as what tells it apart.
-_FAR = 6.0
+# Not covered: 1.4 standard deviations of the difference, squared.  Farther, and a pose would never
+# come back whose errors are as large as what tells it from the others: the flipped one of a dock
+# that is far away, and the true one of three markers that are seen face on.
+_FAR = 2.0
 
 # Two equal normal distributions have one top up to two standard deviations apart, 2 in this
 # measure; but what the pixels leave open is curved, and merged too soon the sum covers neither.

@@ -98,6 +98,27 @@ def test_a_speck_at_the_border_is_no_marker_that_is_beyond_it() -> None:
     assert guided(POINTS, beyond, four, 1.0) is None
 
 
+def test_a_lamp_of_a_marker_that_is_expected_beyond_the_border_is_no_other_marker() -> None:
+    """The left ones are at the border, the upper of them out.  Unsure as the pose is, the lower
+    one, just in view, might be the upper one by its place alone."""
+    near = Estimate(
+        rotations(np.array([[0.0, 0.0, 0.05]]))[0],
+        np.array([-0.102, 0.03, 0.88]),
+        0.0,
+        0.0,
+        np.diag([1 / 0.04**2] * 3 + [1 / 0.03**2] * 3),
+    )
+    places = CAMERA.project(POINTS @ near.R.T + near.t)
+    assert places[0, 0] > 0 > places[2, 0] > -10
+    seen = peaks(shown=[0, 1, 2], specks=0)
+    lower_left = places[2] + [8.0, -15.0]
+    there = replace(seen, xy=np.stack([places[1], lower_left, places[3]]))
+    assert guided(POINTS, near, there, 1.0) is None
+    upper_left = replace(seen, xy=np.stack([places[0], places[1], places[3]]))
+    guess = guided(POINTS, near, upper_left, 1.0)
+    assert guess is not None and guess.markers.tolist() == [0, 1, 3]
+
+
 def test_both_poses_of_a_plane_expect_the_markers_at_the_same_places() -> None:
     """And a pose a hand's breadth aside expects them elsewhere."""
     [turned] = rotations(np.array([[0.0, 0.35, 0.0]]))

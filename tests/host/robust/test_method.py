@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -199,3 +200,18 @@ def test_other_cameras_find_it_too(size: tuple[int, int]) -> None:
         assert found.state == "found"
         assert found.pose is not None
         assert np.linalg.norm(found.pose.t) == pytest.approx(1.6, rel=0.02)
+
+
+@pytest.mark.parametrize(("turn", "state"), [((0.1, 0.2, 0.0), "partial"), ((1.0, 1.1, 0.5), None)])
+def test_three_lamps_are_a_dock_with_a_marker_out_only_if_it_is_turned_as_docks_are(
+    turn: tuple[float, float, float], state: str | None
+) -> None:
+    """Two floats and a lamp stand as three markers of a dock would that is turned by 60 degrees:
+    the search knows the shapes of three places roughly only."""
+    R = cv2.Rodrigues(np.array(turn))[0]
+    frame = lit([(DOCK.points[1:] @ R.T + (0.1, 0.05, 2.5), 1.0)])
+    found = RobustMethod(DOCK).find(replace(looked(frame), incomplete=True), Stopwatch())
+    if state is None:
+        assert found.markers is None
+    else:
+        assert found.markers is not None and set(found.markers) == set(DOCK.names[1:])

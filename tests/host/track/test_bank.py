@@ -69,6 +69,20 @@ def test_what_cannot_be_decided_is_not_decided() -> None:
     assert bank.hypotheses[0].weight / bank.hypotheses[1].weight == pytest.approx(odds, rel=0.5)
 
 
+def test_three_markers_face_on_bring_the_true_pose_back() -> None:
+    """They leave four poses open, each of which fits; the true one had been dropped."""
+    pose: Pose = (rotation(1, 5, -3), np.array([0.1, 0.0, 1.8]))
+    seen = sight(pose, np.random.default_rng(0), DOCK.names[1:])
+    poses = sorted(seen.poses, key=lambda p: np.linalg.norm(turn_between(p.R, pose[0])))
+    assert len(poses) == 4
+    bank = Bank.of(replace(seen, poses=tuple(poses[1:])))
+    assert all(np.linalg.norm(turn_between(h.state.R, pose[0])) > 0.3 for h in bank.hypotheses)
+    back = bank.doubting(seen)
+    assert len(back.hypotheses) == 4
+    nearest = min(np.linalg.norm(turn_between(h.state.R, pose[0])) for h in back.hypotheses)
+    assert np.degrees(nearest) < 5
+
+
 def test_coming_nearer_decides(record_property: Any) -> None:
     """Perspective grows: at two metres only the true pose is left."""
 

@@ -32,12 +32,14 @@ _MAX_CHOICES = 64
 class Guess:
     """``markers`` (k,) of the dock at ``members`` (k,) of the peaks, and the evidence.
 
-    ``expected`` (k, 2): pixels, where they were expected, if they were.
+    ``looks``: the part of the evidence that has nothing to do with where exactly they are, where
+    no pose was expected; ``expected`` (k, 2): pixels, where they were expected, if they were.
     """
 
     markers: NDArray[np.intp]
     members: NDArray[np.intp]
     evidence: float
+    looks: float | None = None
     expected: NDArray[np.float64] | None = None
 
 
@@ -108,7 +110,10 @@ class Expectation:
         own = covariance.reshape(count, 2, count, 2)[range(count), :, range(count)]
         off = peaks.xy - np.asarray(self._places)[:, None]
         square = np.einsum("mpi,mij,mpj->mp", off, np.linalg.inv(own), off)
-        square[~self._inside] = np.inf
+        # What is left of the halo of a marker beyond the border is no other marker either.
+        beyond = ~self._inside
+        square[:, beyond[square.argmin(axis=0)]] = np.inf
+        square[beyond] = np.inf
         near = np.argsort(square, axis=1)[:, :most]
         within = np.take_along_axis(square, near, axis=1) < _GATE
         return [n[w].tolist() for n, w in zip(near, within, strict=True)]
@@ -145,5 +150,5 @@ class Expectation:
         blocks = inverse.reshape(size, 2, size, 2)[range(size), :, range(size)]
         pull = weighed[k].reshape(size, 2, 1)
         square = (pull * np.linalg.solve(blocks, pull)).sum(axis=(1, 2))
-        guess = Guess(markers, members[k], float(evidence[k]), places)
+        guess = Guess(markers, members[k], float(evidence[k]), expected=places)
         return guess, markers[square > _UNLIKELY].tolist()

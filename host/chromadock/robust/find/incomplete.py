@@ -67,8 +67,9 @@ class Incomplete:
         guesses: list[Guess] = []
         for part, search in zip(self._parts, self._searches[cell], strict=True):
             found = search.find(places, peaks, least - rarely - AMBIGUOUS)
-            for members, evidence in zip(found.members, found.evidence.tolist(), strict=True):
-                guesses.append(Guess(part.markers, members, evidence + rarely))
+            each = zip(found.members, found.evidence.tolist(), found.looks.tolist(), strict=True)
+            for members, evidence, looks in each:
+                guesses.append(Guess(part.markers, members, evidence + rarely, looks + rarely))
         best = max(guesses, key=lambda guess: guess.evidence, default=None)
         if best is None or best.evidence < least:
             return None

@@ -99,20 +99,21 @@ class Measure:
                 guess = expectation.guess(found, PEAK_ERROR * cell)
                 if guess is not None and guess.evidence >= LEAST_FOR_A_TRACK:
                     guesses.append((guess, cell, found))
-        guesses.sort(key=lambda g: (len(g[0].markers), g[0].evidence), reverse=True)
+        guesses.sort(key=lambda g: g[0].evidence, reverse=True)
         measured = (self._partly(*guess, priors) for guess in guesses)
         return next(filter(None, measured), None)
 
     def incomplete(self, peaks: dict[int, Peaks]) -> Constellation | None:
         """The dock with a marker out, if that explains the frame well enough."""
-        best: Constellation | None = None
+        measured: list[Constellation] = []
         for cell, found in peaks.items():
-            least = LEAST_FOR_A_TRACK if best is None else best.evidence
-            error_px = PEAK_ERROR * cell
-            guess = self.view.incomplete.find(cell, found, error_px, least, self.upright)
-            if guess is not None:
-                best = self._partly(guess, cell, found) or best
-        return best
+            guess = self.view.incomplete.find(
+                cell, found, PEAK_ERROR * cell, LEAST_FOR_A_TRACK, self.upright
+            )
+            seen = None if guess is None else self._partly(guess, cell, found)
+            if seen is not None:
+                measured.append(seen)
+        return max(measured, key=lambda seen: seen.evidence, default=None)
 
     def _accepted(self, candidate: Candidate) -> Constellation | None:
         peaks, members = candidate.peaks, candidate.members
@@ -195,11 +196,14 @@ class Measure:
         if not poses:
             return None
         placed = placement(sighting, poses, self.prior)
+        evidence = guess.evidence if guess.looks is None else placed.log_density + guess.looks
+        if evidence < LEAST_FOR_A_TRACK:
+            return None
         poses, weights, sighting = _again(sighting, poses, placed)
         poses = poses if priors else tuple(widened(sighting, pose) for pose in poses)
         # About a track's pose the track says how sure the place is.
         unsure = 0.0 if priors else self._doubt(sighting, poses, weights)
-        return Constellation(guess.markers, xy, sighting.sigma_px, guess.evidence, poses, unsure)
+        return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure)
 
     def _refined(
         self,

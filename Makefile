@@ -28,7 +28,8 @@ test: setup ## Run all checks and all tests
 hil: setup ## The hardware tests on the simulated dock; on a board: PORT=/dev/ttyUSB0 [BAUD=...] [FLASH=1]
 	@$(VENV)/python tools/hardware.py $(if $(PORT),--port=$(PORT)) $(if $(BAUD),--baud=$(BAUD)) $(if $(FLASH),--flash)
 
-soak: setup ## Ten minutes of a simulated dock on a bad line; SOAK_SECONDS=20 for a short run
+soak: setup ## A minute of an RTSP camera, ten of a simulated dock on a bad line; SOAK_SECONDS=20 for a short run
+	@CHROMADOCK_STREAM_S=$(or $(SOAK_SECONDS),60) $(VENV)/python -m pytest -q -s tests/host/test_streams.py -k behind
 	@$(VENV)/python tools/soak.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
 
 setup-bench:

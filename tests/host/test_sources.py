@@ -1,6 +1,5 @@
 """open_source: every kind of source gives the same frames, and broken ones say so."""
 
-import time
 from pathlib import Path
 
 import cv2
@@ -11,7 +10,6 @@ from PIL import Image
 from chromadock.errors import ChromadockError
 from chromadock.sources import open_source
 from chromadock.sources.container import missing_bytes
-from chromadock.sources.live import Live
 from chromadock.sources.video import Video
 
 RGB = (10, 120, 230)
@@ -347,42 +345,3 @@ def test_frames_a_second_must_be_a_positive_number(tmp_path, fps):
     picture().save(tmp_path / "a.png")
     with pytest.raises(ChromadockError, match="--fps is"):
         open_source(str(tmp_path), fps=fps)
-
-
-# --- live ---
-
-
-class FakeCapture:
-    """A camera that delivers three frames and then is unplugged."""
-
-    def __init__(self, grey=False):
-        self._left = 3
-        self._image = np.full((6, 8) if grey else (6, 8, 3), 77, np.uint8)
-
-    def get(self, _property):
-        return 0.0
-
-    def read(self):
-        self._left -= 1
-        time.sleep(0.002)
-        return (True, self._image) if self._left >= 0 else (False, None)
-
-    def release(self):
-        self._left = 0
-
-
-@pytest.mark.parametrize("grey", [False, True])
-def test_a_live_source_counts_seconds_from_its_first_frame(grey):
-    source = Live(FakeCapture(grey), "pipeline", endless=False)
-    assert source.live
-    assert source.count is None
-    frames = list(source)
-    assert [f.index for f in frames] == [0, 1, 2]
-    assert frames[0].time_s == 0.0
-    assert 0 < frames[1].time_s < frames[2].time_s
-    assert all(f.image.shape == (6, 8, 3) for f in frames)
-
-
-def test_a_camera_that_is_unplugged_is_a_fault():
-    with pytest.raises(ChromadockError, match="camera 0: delivers no more frames after 3"):
-        list(Live(FakeCapture(), "camera 0", endless=True))

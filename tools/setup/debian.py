@@ -26,6 +26,23 @@ TEST_PACKAGES = {
     "chromium-driver": "chromedriver",
 }
 
+# A real RTSP server for tests/host/test_streams.py, which looks for it in the same way.
+STREAMER_PACKAGES = [
+    "gir1.2-gst-rtsp-server-1.0",
+    "python3-gst-1.0",
+    "gstreamer1.0-plugins-base",
+    "gstreamer1.0-plugins-good",
+    "gstreamer1.0-plugins-ugly",
+]
+SYSTEM_PYTHON = "/usr/bin/python3"
+STREAMER_PROBE = """
+import gi
+gi.require_version("GstRtspServer", "1.0")
+from gi.repository import Gst, GstRtspServer
+Gst.init(None)
+assert Gst.ElementFactory.find("x264enc") and Gst.ElementFactory.find("rtph264pay")
+"""
+
 
 def require_python_and_compiler() -> None:
     """Check what nothing works without, and install what apt-get can.
@@ -79,6 +96,33 @@ def install_test_packages(unavailable: Unavailable) -> None:
     install_programs(unavailable)
     if shutil.which("clang"):
         install_fuzzer(unavailable)
+    install_streamer(unavailable)
+
+
+def install_streamer(unavailable: Unavailable) -> None:
+    """Install what a real RTSP server is made of, in the tests of streams."""
+    if has_streamer():
+        return
+    hindrance = why_not_install()
+    if hindrance is not None:
+        names = " ".join(STREAMER_PACKAGES)
+        unavailable.add("RTSP server", f"no GStreamer here, and {hindrance.format(names)}")
+        return
+    try:
+        with step(f"Debian packages: {' '.join(STREAMER_PACKAGES)}"):
+            install(STREAMER_PACKAGES)
+            if not has_streamer():
+                raise SetupError("they do not serve RTSP here")
+    except SetupError as error:
+        unavailable.add("RTSP server", str(error))
+
+
+def has_streamer() -> bool:
+    """Tell whether the system's Python, whose bindings Debian has, can serve RTSP."""
+    if not Path(SYSTEM_PYTHON).exists():
+        return False
+    probe = subprocess.run([SYSTEM_PYTHON, "-c", STREAMER_PROBE], capture_output=True)
+    return probe.returncode == 0
 
 
 def install_fuzzer(unavailable: Unavailable) -> None:

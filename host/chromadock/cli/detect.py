@@ -72,6 +72,13 @@ def detect(
     fps: Annotated[
         float, typer.Option(help="Frames a second of a folder of pictures.")
     ] = DEFAULT_FPS,
+    delay: Annotated[
+        float,
+        typer.Option(
+            metavar="S",
+            help="From capture to arrival of a camera's or stream's pictures, where it is known.",
+        ),
+    ] = 0.0,
 ) -> None:
     """Find the dock in every frame of SOURCE and tell where it is.
 
@@ -84,6 +91,7 @@ def detect(
     from chromadock.detector import Detector
     from chromadock.dock import DockGeometry
     from chromadock.marker_colour import MarkerColour
+    from chromadock.sources import open_source
 
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock)
     model = None if camera is None else CameraModel.from_yaml(camera)
@@ -98,4 +106,5 @@ def detect(
         fallback_hue_deg=fallback_hue,
     )
     report = Report(json=json, calibrated=model is not None)
-    raise typer.Exit(detect_frames(source, fps, detector, model, geometry, overlay, report))
+    frames = open_source(source, fps, report.skipped, report.notice, delay)
+    raise typer.Exit(detect_frames(frames, detector, model, geometry, overlay, report))

@@ -12,31 +12,31 @@ from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.output import OverlayOutput, open_overlay
 from chromadock.overlay import draw_overlay
-from chromadock.sources import Frame, Source, open_source
+from chromadock.results.detection import Detection
+from chromadock.sources import Frame, Source
 
 EXIT_SKIPPED = 1
 EXIT_INTERRUPTED = 130
 
 
 def detect_frames(
-    source: str,
-    fps: float,
+    frames: Source,
     detector: Detector,
     model: CameraModel | None,
     geometry: DockGeometry,
     overlay: Path | None,
     report: Report,
 ) -> int:
-    """Look for the dock in all frames of ``source``, tell ``report``; the exit status."""
+    """Look for the dock in all ``frames``, tell ``report``, close them; the exit status."""
     with ExitStack() as stack:
-        frames = stack.enter_context(open_source(source, fps, report.skipped))
+        stack.enter_context(frames)
         pictures = None
         if overlay is not None:
             _check_apart(overlay, frames)
             pictures = stack.enter_context(open_overlay(overlay, frames.count, frames.fps))
         stack.enter_context(report.progress(frames.count))
         interrupted = _run(frames, detector, model, geometry, pictures, report)
-    report.summary()
+    report.summary(frames.dropped)
     if interrupted:
         return EXIT_INTERRUPTED
     return EXIT_SKIPPED if frames.errors else 0
@@ -59,7 +59,9 @@ def _run(
     """Frame after frame; True where Ctrl-C ended a live source, which is its only end."""
     try:
         for frame in frames:
-            _one(frame, detector, model, geometry, pictures, report)
+            detection = _one(frame, detector, model, geometry, pictures)
+            now_s = frames.now()
+            report.frame(frame, detection, None if now_s is None else now_s - frame.time_s)
     except KeyboardInterrupt:
         if not frames.live:
             raise
@@ -73,8 +75,7 @@ def _one(
     model: CameraModel | None,
     geometry: DockGeometry,
     pictures: OverlayOutput | None,
-    report: Report,
-) -> None:
+) -> Detection:
     try:
         detection = detector.process(frame.image, frame.time_s)
     except ChromadockError as error:
@@ -84,4 +85,4 @@ def _one(
         camera = model or CameraModel.nominal(width, height)
         drawn = draw_overlay(frame.image, detector.mask, detection, camera, geometry)
         pictures.write(drawn, frame.name, frame.index)
-    report.frame(frame, detection)
+    return detection

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -30,6 +31,9 @@ _MOST_CLIPPED = 0.6
 _MISFIT_FRAMES = 3
 """One frame may be a chance."""
 
+_AGES = 100_000
+"""So many of the newest pictures' ages are kept: an hour's at 30 frames a second."""
+
 _HEADER = (
     "   frame   time s  state       range m        x        y        z  error px"
     "  track             m  file"
@@ -54,9 +58,12 @@ class Report:
         self._off: list[complex] = []
         self._clipped = 0
         self._misfits = 0
+        self._ages_s: deque[float] = deque(maxlen=_AGES)
 
-    def frame(self, frame: Frame, detection: Detection) -> None:
-        """Tell of one frame."""
+    def frame(self, frame: Frame, detection: Detection, age_s: float | None = None) -> None:
+        """Tell of one frame; ``age_s``: how old the picture of a live source is by now, seconds."""
+        if age_s is not None:
+            self._ages_s.append(age_s)
         if detection.pose is not None and not self._calibrated:
             self._calibrated = True  # once is enough
             self._aside("warning: no --camera: a usual lens is assumed, so distances are rough")
@@ -67,7 +74,8 @@ class Report:
         self._advise(detection)
         if self._json:
             record = {"file": frame.name, "frame": frame.index, "time_s": round(frame.time_s, 6)}
-            self._print(json_line({**record, **detection.to_dict()}))
+            age = {} if age_s is None else {"age_s": round(age_s, 4)}
+            self._print(json_line({**record, **age, **detection.to_dict()}))
         else:
             if not self._frames:
                 self._print(_HEADER)
@@ -121,13 +129,23 @@ class Report:
         if self._bar is not None:
             self._bar.advance(self._bar.task_ids[0])
 
-    def summary(self) -> None:
-        """The last line."""
+    def notice(self, line: str) -> None:
+        """Tell of something that went wrong or right with a source, whichever thread it is."""
+        self._aside(line)
+
+    def summary(self, dropped: int = 0) -> None:
+        """The last line; of a live source, how many frames were ``dropped`` for newer ones."""
         tracked = f"{self._tracked} tracked, " if self._tracked else ""
         words = (
             f"{plural(self._frames, 'frame')}, {self._found} found, {tracked}"
             f"{self._skipped} skipped"
         )
+        if self._ages_s:
+            median, most = np.quantile(self._ages_s, (0.5, 0.99)) * 1000
+            words += (
+                f", {dropped} dropped for newer ones; age of the picture when its result was out "
+                f"{median:.0f} ms in the median, {most:.0f} ms at most in 99 of 100"
+            )
         print(words, file=sys.stderr if self._json else sys.stdout, flush=True)
 
     @contextmanager

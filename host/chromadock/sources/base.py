@@ -24,7 +24,8 @@ def ignore(_line: str) -> None:
 @dataclass(frozen=True, eq=False)
 class Frame:
     """One picture: ``image`` HxWx3 uint8 BGR, the ``name`` of its file or camera, its
-    ``index`` in the source from 0 and its ``time_s`` in seconds from the start."""
+    ``index`` in the source from 0 and its ``time_s``, when it was taken, in seconds from the
+    start."""
 
     image: NDArray[np.uint8]
     name: str
@@ -45,6 +46,8 @@ class Source(ABC):
         True for cameras and streams, which have no end of their own.
     errors
         Pictures skipped so far because they could not be read.
+    dropped
+        Pictures of a live source so far that a newer one came after before anybody asked.
     places
         Files it reads, and folders of pictures; an output must not go there.
     """
@@ -53,6 +56,7 @@ class Source(ABC):
     fps: float = DEFAULT_FPS
     live: bool = False
     errors: int = 0
+    dropped: int = 0
     places: frozenset[Path] = frozenset()
 
     @abstractmethod
@@ -64,6 +68,10 @@ class Source(ABC):
         ChromadockError
             Where the source breaks off.
         """
+
+    def now(self) -> float | None:
+        """This moment on the clock of a live source's ``Frame.time_s``; None of a recording."""
+        return None
 
     def close(self) -> None:  # noqa: B027 - most sources hold nothing open
         """Let go of the camera or file."""

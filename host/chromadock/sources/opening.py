@@ -6,19 +6,31 @@ import glob
 import os
 import re
 import stat
+from functools import partial
 from pathlib import Path
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
 from chromadock.sources.base import OnSkip, Source, ignore
-from chromadock.sources.live import open_camera, open_pipeline, open_url
+from chromadock.sources.device import open_device, open_gstreamer
+from chromadock.sources.live import Live
 from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture, natural_key
+from chromadock.sources.urls import open_url
 from chromadock.sources.video import open_video
+
+LONGEST_DELAY_S = 10.0
+"""No picture that is older helps to steer."""
 
 _KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
 
 
-def open_source(text: str, fps: float = DEFAULT_FPS, on_skip: OnSkip = ignore) -> Source:
+def open_source(
+    text: str,
+    fps: float = DEFAULT_FPS,
+    on_skip: OnSkip = ignore,
+    tell: OnSkip = ignore,
+    delay_s: float = 0.0,
+) -> Source:
     """Open what ``text`` names.
 
     Parameters
@@ -31,6 +43,10 @@ def open_source(text: str, fps: float = DEFAULT_FPS, on_skip: OnSkip = ignore) -
         Frames a second of a folder or glob of pictures.
     on_skip
         Called with one line for each picture that is skipped.
+    tell
+        Called with one line when a live source goes away, and when it is back; by its thread.
+    delay_s
+        From capture to arrival of a live source's pictures, seconds: see ``CaptureTime``.
 
     Raises
     ------
@@ -39,26 +55,38 @@ def open_source(text: str, fps: float = DEFAULT_FPS, on_skip: OnSkip = ignore) -
     """
     if not (0 < fps < float("inf")):
         raise ChromadockError(f"--fps is {fps:g}: it must be a positive number")
+    if not (0 <= delay_s <= LONGEST_DELAY_S):
+        raise ChromadockError(
+            f"--delay is {delay_s:g}: give the seconds from capture to arrival, "
+            f"0 to {LONGEST_DELAY_S:g}"
+        )
     if text.isascii() and text.isdigit():
-        return open_camera(int(text))
+        name = f"camera {text}"
+        return Live(partial(open_device, int(text), name), name, tell, delay_s)
     path = Path(text)
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
-        return _not_a_path(text, fps, on_skip, error)
+        live = _live(text, tell, delay_s)
+        return live or _not_a_path(text, fps, on_skip, error)
     if stat.S_ISDIR(mode):
         return _folder(path, fps, on_skip)
     if stat.S_ISCHR(mode):
-        return open_camera(text)
+        return Live(partial(open_device, text, text), text, tell, delay_s)
     return _file(path, fps, on_skip)
 
 
-def _not_a_path(text: str, fps: float, on_skip: OnSkip, error: Exception) -> Source:
-    """Pipelines, URLs and globs; anything else was meant as a path."""
+def _live(text: str, tell: OnSkip, delay_s: float) -> Source | None:
+    """What is no path and delivers frames by itself."""
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
-        return open_url(text)
+        return open_url(text, tell, delay_s)
     if "!" in text:
-        return open_pipeline(text)
+        return Live(partial(open_gstreamer, text), "pipeline", tell, delay_s)
+    return None
+
+
+def _not_a_path(text: str, fps: float, on_skip: OnSkip, error: Exception) -> Source:
+    """Globs; anything else was meant as a path."""
     if glob.has_magic(text):
         return _glob(text, fps, on_skip)
     if isinstance(error, PermissionError):

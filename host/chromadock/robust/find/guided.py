@@ -111,7 +111,7 @@ class Expectation:
         off = peaks.xy - np.asarray(self._places)[:, None]
         square = np.einsum("mpi,mij,mpj->mp", off, np.linalg.inv(own), off)
         # What is left of the halo of a marker beyond the border is no other marker either.
-        beyond = ~self._inside
+        beyond = np.asarray(~self._inside)
         square[:, beyond[square.argmin(axis=0)]] = np.inf
         square[beyond] = np.inf
         near = np.argsort(square, axis=1)[:, :most]

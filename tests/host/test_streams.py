@@ -1,0 +1,145 @@
+"""Real streams, each from a server of somebody else's, on loopback."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from fractions import Fraction
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import av
+import cv2
+import numpy as np
+import pytest
+from picture_time import age_s
+
+from chromadock.errors import ChromadockError
+from chromadock.sources import Source, open_source
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TESTS.parent / "tools" / "setup"))
+from debian import SYSTEM_PYTHON, has_streamer  # noqa: E402
+
+SECONDS = float(os.environ.get("CHROMADOCK_STREAM_S", "5"))
+"""`make soak` gives a minute."""
+
+OLD_S = 0.15
+
+
+def slowly(source: Source, seconds: float) -> np.ndarray:
+    """True ages of the pictures that a detector of 10 Hz has in its hands."""
+    ages, end_s = [], time.monotonic() + seconds
+    for frame in source:
+        ages.append(age_s(frame.image, time.monotonic()))
+        time.sleep(0.1)
+        if time.monotonic() > end_s:
+            break
+    return np.array(ages)
+
+
+@pytest.fixture
+def rtsp() -> Iterator[str]:
+    if not has_streamer():
+        pytest.skip("no GStreamer with RTSP server here")
+    command = [SYSTEM_PYTHON, str(TESTS / "rtsp_server.py")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        yield f"rtsp://127.0.0.1:{server.stdout.readline().strip()}/camera"
+        server.kill()
+
+
+def test_an_rtsp_camera_of_30_frames_a_second_is_never_behind(rtsp: str) -> None:
+    with open_source(rtsp) as source:
+        ages = slowly(source, SECONDS)
+        third = len(ages) // 3
+        early, late = (float(np.quantile(part, 0.99)) for part in (ages[3:third], ages[-third:]))
+        assert source.dropped > len(ages)
+    print(f"age of the picture, 99th percentile: {early:.3f} s at first, {late:.3f} s at last")
+    assert early < OLD_S and late < OLD_S
+
+
+def test_the_time_of_an_rtsp_picture_is_when_it_was_taken_but_for_the_encoder(rtsp: str) -> None:
+    with open_source(rtsp) as source:
+        errors = []
+        for frame in source:
+            now_s = time.monotonic()
+            told = source.now() - frame.time_s  # type: ignore[operator]
+            errors.append(age_s(frame.image, now_s) - told)
+            if len(errors) == 60:
+                break
+    # The server's encoder and sender take some 20 ms, which no stamp tells: see --delay.
+    assert 0 < np.median(errors[10:]) < 0.06
+    assert np.ptp(np.quantile(errors[10:], (0.05, 0.95))) < 0.04
+
+
+def test_an_rtsp_server_that_is_gone_is_told_and_an_address_without_one_refused(rtsp: str) -> None:
+    with pytest.raises(ChromadockError, match=r"does not open: check the address") as refused:
+        open_source(rtsp.replace("rtsp://", "rtsp://me:secret@").replace("/camera", "/none"))
+    assert "secret" not in str(refused.value)
+
+
+class Motion(BaseHTTPRequestHandler):
+    """A web camera's multipart JPEG, the oldest of all streams."""
+
+    def do_GET(self) -> None:
+        self.send_response(200)
+        self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
+        self.end_headers()
+        for level in range(self.server.pictures):  # type: ignore[attr-defined]
+            _, jpeg = cv2.imencode(".jpg", np.full((48, 64, 3), 40 + 2 * level, np.uint8))
+            head = f"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}\r\n\r\n"
+            self.wfile.write(head.encode() + jpeg.tobytes() + b"\r\n")
+            self.wfile.flush()
+            time.sleep(0.02)
+
+    def log_message(self, *_words: object) -> None:
+        """Say nothing."""
+
+
+def test_a_web_camera_that_breaks_off_is_waited_for() -> None:
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Motion)
+    server.pictures = 40  # type: ignore[attr-defined]
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    lines: list[str] = []
+    with open_source(f"http://127.0.0.1:{server.server_port}/video", tell=lines.append) as source:
+        frames = []
+        for frame in source:
+            frames.append(frame)
+            if len(lines) == 2 and len(frames) > 5:
+                break
+    server.shutdown()
+    server.server_close()
+    assert frames[0].image.shape == (48, 64, 3)
+    assert "delivers no more frames" in lines[0] and "is back" in lines[1]
+
+
+def test_mpeg_over_udp_is_read() -> None:
+    """What most video transmitters of vehicles send."""
+    port, stop = 20000 + os.getpid() % 20000, threading.Event()
+
+    def send() -> None:
+        with av.open(f"udp://127.0.0.1:{port}", "w", format="mpegts") as out:
+            video = out.add_stream("mpeg2video", rate=30)
+            video.width, video.height, video.pix_fmt, video.gop_size = 320, 240, "yuv420p", 5
+            for k in range(3000):
+                image = np.full((240, 320, 3), k % 200, np.uint8)
+                frame = av.VideoFrame.from_ndarray(image, "bgr24")
+                frame.pts, frame.time_base = k, Fraction(1, 30)
+                out.mux(video.encode(frame))
+                if stop.wait(1 / 30):
+                    return
+
+    sender = threading.Thread(target=send, daemon=True)
+    sender.start()
+    with open_source(f"udp://127.0.0.1:{port}") as source:
+        frames = [frame for frame, _ in zip(source, range(20), strict=False)]
+    stop.set()
+    sender.join()
+    assert all(frame.image.shape == (240, 320, 3) for frame in frames)
+    assert (np.diff([frame.time_s for frame in frames]) > 0).all()
+    assert frames[-1].image.mean() > frames[0].image.mean()

@@ -19,7 +19,8 @@ WIDTH, HEIGHT, COLUMNS, ROWS, FPS = 320, 240, 8, 4, 30
 PIPELINE = (
     f"( appsrc name=camera is-live=true format=time do-timestamp=true "
     f"caps=video/x-raw,format=GRAY8,width={WIDTH},height={HEIGHT},framerate={FPS}/1 "
-    "! videoconvert ! x264enc tune=zerolatency speed-preset=ultrafast key-int-max=15 bitrate=2000 "
+    "! videoconvert ! video/x-raw,format=I420 "
+    "! x264enc tune=zerolatency speed-preset=ultrafast key-int-max=15 bitrate=2000 "
     "! rtph264pay name=pay0 pt=96 config-interval=1 )"
 )
 

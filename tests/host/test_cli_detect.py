@@ -121,7 +121,7 @@ def test_json_is_one_object_a_frame_and_nothing_else_on_standard_output(folder):
     assert [r["frame"] for r in records] == [0, 1, 2]
     assert [r["time_s"] for r in records] == [0, 0.1, 0.2]
     assert set(records[0]) == {
-        "file", "frame", "time_s", "state", "found", "background", "marker", "observed",
+        "file", "frame", "time_s", "schema", "state", "found", "background", "marker", "observed",
         "passed_fraction", "blobs", "markers", "pose", "evidence", "clipped",
         "stops_over", "misfit", "track", "timing_ms",
     }  # fmt: skip

@@ -1,13 +1,14 @@
-"""What the detector says of one frame, and how that reads as JSON."""
+"""What the detector says of one frame."""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from chromadock.results import record
 from chromadock.results.pose import Pose
-from chromadock.results.track import Track, TrackedPose
+from chromadock.results.track import Track
 
 RGB = tuple[int, int, int]
 Point = tuple[float, float]
@@ -101,83 +102,15 @@ class Detection:
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of ``chromadock detect --json``, without file and frame."""
-        return {
-            "state": self.state,
-            "found": self.found,
-            "background": {
-                "rgb": list(self.background.rgb),
-                "hue_deg": _rounded(self.background.hue_deg, 2),
-                "confidence": _rounded(self.background.confidence, 3),
-            },
-            "marker": {
-                "rgb": None if self.marker.rgb is None else list(self.marker.rgb),
-                "hue_deg": _rounded(self.marker.hue_deg, 2),
-                "received_deg": _rounded(self.marker.received_deg, 2),
-                "given": self.marker.given,
-            },
-            "observed": {"rgb": None if self.observed is None else list(self.observed)},
-            "passed_fraction": _rounded(self.passed_fraction, 6),
-            "blobs": [
-                [_rounded(b.x, 2), _rounded(b.y, 2), _rounded(b.radius, 2)] for b in self.blobs
-            ],
-            "markers": None
-            if self.markers is None
-            else {name: [_rounded(x, 2), _rounded(y, 2)] for name, (x, y) in self.markers.items()},
-            "pose": None if self.pose is None else _pose_dict(self.pose),
-            "evidence": _rounded(self.evidence, 2),
-            "clipped": _rounded(self.clipped, 3),
-            "stops_over": _rounded(self.stops_over, 1),
-            "misfit": None
-            if self.misfit is None
-            else {
-                "evidence": _rounded(self.misfit.evidence, 2),
-                "error_px": _rounded(self.misfit.error_px, 2),
-            },
-            "track": None if self.track is None else _track_dict(self.track),
-            "timing_ms": {stage: _rounded(ms, 2) for stage, ms in self.timing_ms.items()},
-        }
+        return record.of_detection(self)
 
+    @staticmethod
+    def from_dict(content: Mapping[str, Any]) -> Detection:
+        """What ``to_dict`` told, to the digits that it gives; further keys are passed over.
 
-def _pose_dict(pose: Pose) -> dict[str, Any]:
-    return {
-        "t": [_rounded(v, 4) for v in pose.t],
-        "q_wxyz": [_rounded(v, 6) for v in pose.q_wxyz],
-        "reprojection_px": _rounded(pose.reprojection_px, 3),
-        "covariance": None
-        if pose.covariance is None
-        else [_significant(v, 4) for v in pose.covariance],
-        "alternative": None if pose.alternative is None else _pose_dict(pose.alternative),
-    }
-
-
-def _track_dict(track: Track) -> dict[str, Any]:
-    velocity, turn_rate = track.velocity, track.turn_rate
-    return {
-        "state": track.state,
-        "pose": None if track.pose is None else _tracked_dict(track.pose),
-        "alternative": None if track.alternative is None else _tracked_dict(track.alternative),
-        "velocity_m_s": None if velocity is None else [_rounded(v, 4) for v in velocity],
-        "turn_rate_rad_s": None if turn_rate is None else [_rounded(v, 4) for v in turn_rate],
-        "age_s": _rounded(track.age_s, 4),
-    }
-
-
-def _tracked_dict(pose: TrackedPose) -> dict[str, Any]:
-    return {
-        "t": [_rounded(v, 4) for v in pose.t],
-        "q_wxyz": [_rounded(v, 6) for v in pose.q_wxyz],
-        "covariance": [_significant(v, 4) for v in pose.covariance],
-        "weight": _rounded(pose.weight, 4),
-    }
-
-
-def _rounded(value: float | None, digits: int) -> float | None:
-    """JSON has no NaN or infinity: both become null, like None."""
-    if value is None or not math.isfinite(value):
-        return None
-    return round(value, digits)
-
-
-def _significant(value: float, digits: int) -> float | None:
-    """The same for numbers of any size."""
-    return float(f"{value:.{digits}g}") if math.isfinite(value) else None
+        Raises
+        ------
+        ChromadockError
+            One line, where it is of another schema, or a key is missing or no such value.
+        """
+        return record.to_detection(content)

@@ -108,7 +108,7 @@ def test_the_track_reads_as_json() -> None:
     )
     assert first == {
         "state": "acquiring", "pose": None, "alternative": None, "velocity_m_s": None,
-        "turn_rate_rad_s": None, "age_s": None,
+        "turn_rate_rad_s": None, "age_s": None, "time_s": 0.0,
     }  # fmt: skip
     assert last["state"] == "tracking" and last["age_s"] == 0
     assert len(last["pose"]["covariance"]) == 36 and len(last["velocity_m_s"]) == 3

@@ -65,6 +65,14 @@ def detect(
         ),
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
+    out: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KIND:PLACE",
+            help="Where else each result goes, as often as you like: json:FILE, udp:HOST:PORT.",
+            show_default=False,
+        ),
+    ] = None,
     overlay: Annotated[
         Path | None,
         typer.Option(help="Draw what was seen into a folder or a .mp4.", show_default=False),
@@ -107,4 +115,4 @@ def detect(
     )
     report = Report(json=json, calibrated=model is not None)
     frames = open_source(source, fps, report.skipped, report.notice, delay)
-    raise typer.Exit(detect_frames(frames, detector, model, geometry, overlay, report))
+    raise typer.Exit(detect_frames(frames, detector, model, geometry, overlay, out or [], report))

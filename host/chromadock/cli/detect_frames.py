@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from chromadock.cli.report import Report
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
-from chromadock.output import OverlayOutput, open_overlay
+from chromadock.output import Guarded, OverlayOutput, ResultOutput, open_output, open_overlay
 from chromadock.overlay import draw_overlay
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame, Source
@@ -25,17 +26,22 @@ def detect_frames(
     model: CameraModel | None,
     geometry: DockGeometry,
     overlay: Path | None,
+    outputs: Sequence[str],
     report: Report,
 ) -> int:
-    """Look for the dock in all ``frames``, tell ``report``, close them; the exit status."""
+    """Look for the dock in all ``frames``, tell ``report`` and the ``outputs``, close them all; the
+    exit status."""
     with ExitStack() as stack:
         stack.enter_context(frames)
         pictures = None
         if overlay is not None:
             _check_apart(overlay, frames)
             pictures = stack.enter_context(open_overlay(overlay, frames.count, frames.fps))
+        results = [
+            stack.enter_context(Guarded(open_output(text), report.notice)) for text in outputs
+        ]
         stack.enter_context(report.progress(frames.count))
-        interrupted = _run(frames, detector, model, geometry, pictures, report)
+        interrupted = _run(frames, detector, model, geometry, pictures, results, report)
     report.summary(frames.dropped)
     if interrupted:
         return EXIT_INTERRUPTED
@@ -54,6 +60,7 @@ def _run(
     model: CameraModel | None,
     geometry: DockGeometry,
     pictures: OverlayOutput | None,
+    results: Sequence[ResultOutput],
     report: Report,
 ) -> bool:
     """Frame after frame; True where Ctrl-C ended a live source, which is its only end."""
@@ -61,7 +68,10 @@ def _run(
         for frame in frames:
             detection = _one(frame, detector, model, geometry, pictures)
             now_s = frames.now()
-            report.frame(frame, detection, None if now_s is None else now_s - frame.time_s)
+            age_s = None if now_s is None else now_s - frame.time_s
+            for output in results:
+                output.write(frame, detection, age_s)
+            report.frame(frame, detection, age_s)
     except KeyboardInterrupt:
         if not frames.live:
             raise

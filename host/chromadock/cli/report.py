@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from chromadock.output import json_line
+from chromadock.output import json_line, result_record
 from chromadock.results.detection import Detection, Marker
 from chromadock.sources import Frame
 from chromadock.text import plural
@@ -73,9 +73,7 @@ class Report:
             self._compare(detection.marker)
         self._advise(detection)
         if self._json:
-            record = {"file": frame.name, "frame": frame.index, "time_s": round(frame.time_s, 6)}
-            age = {} if age_s is None else {"age_s": round(age_s, 4)}
-            self._print(json_line({**record, **age, **detection.to_dict()}))
+            self._print(json_line(result_record(frame, detection, age_s)))
         else:
             if not self._frames:
                 self._print(_HEADER)

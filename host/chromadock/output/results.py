@@ -1,0 +1,58 @@
+"""Outputs that take each frame's result as it comes, any number at once."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from types import TracebackType
+from typing import Any, TypeVar
+
+from chromadock.results.detection import Detection
+from chromadock.sources import Frame
+
+_Self = TypeVar("_Self", bound="ResultOutput")
+
+
+class ResultOutput(ABC):
+    """Somewhere results go while the detection runs: a file, the network, an autopilot.
+
+    A context manager that closes at the end.
+    """
+
+    @abstractmethod
+    def write(self, frame: Frame, detection: Detection, age_s: float | None) -> None:
+        """Pass one result on; never waits for a slow or dead receiver.
+
+        Parameters
+        ----------
+        age_s : how old the picture of a live source is by now, seconds; None of a recording.
+
+        Raises
+        ------
+        ChromadockError
+            Where it cannot; a later write may go well again.
+        """
+
+    def close(self) -> None:  # noqa: B027 - some outputs hold nothing open
+        """Finish and let go of what is open."""
+
+    def __enter__(self: _Self) -> _Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def result_record(frame: Frame, detection: Detection, age_s: float | None) -> dict[str, Any]:
+    """One frame's result as a JSON object, alike wherever it goes.
+
+    ``file``, ``frame`` and ``time_s`` say which frame it is; ``age_s``, of a live source only, how
+    old its picture was when its result was out; the rest is ``Detection.to_dict``.
+    """
+    which = {"file": frame.name, "frame": frame.index, "time_s": round(frame.time_s, 6)}
+    age = {} if age_s is None else {"age_s": round(age_s, 4)}
+    return {**which, **age, **detection.to_dict()}

@@ -6,6 +6,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from chromadock.camera import CameraModel
+from chromadock.cli.exit_status import EXIT_INTERRUPTED, EXIT_SKIPPED
 from chromadock.cli.report import Report
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
@@ -13,9 +14,6 @@ from chromadock.errors import ChromadockError
 from chromadock.output import OverlayOutput, open_overlay
 from chromadock.overlay import draw_overlay
 from chromadock.sources import Frame, Source, open_source
-
-EXIT_SKIPPED = 1
-EXIT_INTERRUPTED = 130
 
 
 def detect_frames(
@@ -29,17 +27,17 @@ def detect_frames(
 ) -> int:
     """Look for the dock in all frames of ``source``, tell ``report``; the exit status."""
     with ExitStack() as stack:
-        frames = stack.enter_context(open_source(source, fps, report.skipped))
+        frames = stack.enter_context(open_source(source, fps, report.fault))
         pictures = None
         if overlay is not None:
             _check_apart(overlay, frames)
             pictures = stack.enter_context(open_overlay(overlay, frames.count, frames.fps))
         stack.enter_context(report.progress(frames.count))
         interrupted = _run(frames, detector, model, geometry, pictures, report)
-    report.summary()
+    report.summary(frames.errors)
     if interrupted:
         return EXIT_INTERRUPTED
-    return EXIT_SKIPPED if frames.errors else 0
+    return EXIT_SKIPPED if frames.errors or frames.cut_short else 0
 
 
 def _check_apart(overlay: Path, frames: Source) -> None:

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from chromadock.choices import DEFAULT_FPS
 
-OnSkip = Callable[[str], None]
-"""Takes one line about a picture that was skipped."""
+OnFault = Callable[[str], None]
+"""Takes one line about a picture that was skipped, or a video that ends too early."""
 
 
 def ignore(_line: str) -> None:
-    """The ``OnSkip`` of a caller who only looks at ``Source.errors``."""
+    """The ``OnFault`` of a caller who looks at ``Source.errors`` and ``cut_short``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +38,16 @@ class Source(ABC):
     Attributes
     ----------
     count
-        Number of frames, or None where nobody knows.
+        About how many frames there are, or None where nobody knows; a video's header promises
+        nothing.
     fps
         Nominal frames a second.
     live
         True for cameras and streams, which have no end of their own.
     errors
         Pictures skipped so far because they could not be read.
+    cut_short
+        True once it is found that the source breaks off before its end.
     places
         Files it reads, and folders of pictures; an output must not go there.
     """
@@ -53,6 +56,7 @@ class Source(ABC):
     fps: float = DEFAULT_FPS
     live: bool = False
     errors: int = 0
+    cut_short: bool = False
     places: frozenset[Path] = frozenset()
 
     @abstractmethod

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 import cv2
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import Frame
+from chromadock.sources.base import Frame, OnFault
 from chromadock.sources.capture import Capture, frame_count
-from chromadock.sources.video import Video
+from chromadock.sources.video import Video, open_remote_video
 
 
 class Live(Capture):
@@ -80,7 +80,7 @@ def open_pipeline(text: str) -> Live:
     return Live(capture, "pipeline", endless=False)
 
 
-def open_url(url: str) -> Live | Video:
+def open_url(url: str, on_fault: OnFault) -> Live | Video:
     """A network stream, or a video file behind a URL.
 
     Raises
@@ -92,7 +92,8 @@ def open_url(url: str) -> Live | Video:
     capture = cv2.VideoCapture(url, cv2.CAP_FFMPEG)
     _check_open(capture, name, "check the address, and that the stream runs")
     if frame_count(capture) is not None:
-        return Video(capture, name, name, exact=False)
+        capture.release()
+        return open_remote_video(url, name, on_fault)
     return Live(capture, name, endless=False)
 
 

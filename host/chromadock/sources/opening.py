@@ -10,7 +10,7 @@ from pathlib import Path
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import OnSkip, Source, ignore
+from chromadock.sources.base import OnFault, Source, ignore
 from chromadock.sources.live import open_camera, open_pipeline, open_url
 from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture, natural_key
 from chromadock.sources.video import open_video
@@ -18,7 +18,7 @@ from chromadock.sources.video import open_video
 _KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
 
 
-def open_source(text: str, fps: float = DEFAULT_FPS, on_skip: OnSkip = ignore) -> Source:
+def open_source(text: str, fps: float = DEFAULT_FPS, on_fault: OnFault = ignore) -> Source:
     """Open what ``text`` names.
 
     Parameters
@@ -29,8 +29,8 @@ def open_source(text: str, fps: float = DEFAULT_FPS, on_skip: OnSkip = ignore) -
         exists as a file wins over the other readings, except for bare camera indices.
     fps
         Frames a second of a folder or glob of pictures.
-    on_skip
-        Called with one line for each picture that is skipped.
+    on_fault
+        Called with one line for each picture that is skipped, and for a video's missing end.
 
     Raises
     ------
@@ -45,28 +45,28 @@ def open_source(text: str, fps: float = DEFAULT_FPS, on_skip: OnSkip = ignore) -
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
-        return _not_a_path(text, fps, on_skip, error)
+        return _not_a_path(text, fps, on_fault, error)
     if stat.S_ISDIR(mode):
-        return _folder(path, fps, on_skip)
+        return _folder(path, fps, on_fault)
     if stat.S_ISCHR(mode):
         return open_camera(text)
-    return _file(path, fps, on_skip)
+    return _file(path, fps, on_fault)
 
 
-def _not_a_path(text: str, fps: float, on_skip: OnSkip, error: Exception) -> Source:
+def _not_a_path(text: str, fps: float, on_fault: OnFault, error: Exception) -> Source:
     """Pipelines, URLs and globs; anything else was meant as a path."""
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
-        return open_url(text)
+        return open_url(text, on_fault)
     if "!" in text:
         return open_pipeline(text)
     if glob.has_magic(text):
-        return _glob(text, fps, on_skip)
+        return _glob(text, fps, on_fault)
     if isinstance(error, PermissionError):
         raise ChromadockError(f"{text}: permission denied: allow reading it")
     raise ChromadockError(f"{text}: no such file or folder: {_KINDS}")
 
 
-def _file(path: Path, fps: float, on_skip: OnSkip) -> Source:
+def _file(path: Path, fps: float, on_fault: OnFault) -> Source:
     try:
         with path.open("rb") as file:
             empty = not file.read(1)
@@ -77,11 +77,11 @@ def _file(path: Path, fps: float, on_skip: OnSkip) -> Source:
     if empty:
         raise ChromadockError(f"{path}: the file is empty: copy it again")
     if is_picture(path):
-        return Pictures([path], [path.name], fps, on_skip, single=True)
-    return open_video(path)
+        return Pictures([path], [path.name], fps, on_fault, single=True)
+    return open_video(path, on_fault)
 
 
-def _folder(path: Path, fps: float, on_skip: OnSkip) -> Source:
+def _folder(path: Path, fps: float, on_fault: OnFault) -> Source:
     try:
         inside = [p for p in path.iterdir() if _is_visible_image(p)]
     except OSError as error:
@@ -92,17 +92,17 @@ def _folder(path: Path, fps: float, on_skip: OnSkip) -> Source:
     if not inside:
         suffixes = " ".join(sorted(IMAGE_SUFFIXES))
         raise ChromadockError(f"{path}: no pictures in this folder: it needs some of {suffixes}")
-    return Pictures(inside, [p.name for p in inside], fps, on_skip)
+    return Pictures(inside, [p.name for p in inside], fps, on_fault)
 
 
-def _glob(pattern: str, fps: float, on_skip: OnSkip) -> Source:
+def _glob(pattern: str, fps: float, on_fault: OnFault) -> Source:
     found = [Path(p) for p in glob.glob(pattern, recursive=True)]  # noqa: PTH207 - absolute, too
     found = [p for p in found if _is_visible_image(p)]
     if not found:
         raise ChromadockError(f"{pattern}: no picture matches: check the pattern and the folder")
     found.sort(key=lambda p: natural_key(str(p)))
     above = os.path.commonpath([p.parent for p in found])
-    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, on_skip)
+    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, on_fault)
 
 
 def _is_visible_image(path: Path) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 from PIL import Image, UnidentifiedImageError
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import Frame, OnSkip, Source
+from chromadock.sources.base import Frame, OnFault, Source
 from chromadock.sources.still import read_still
 
 IMAGE_SUFFIXES = frozenset(
@@ -29,7 +29,7 @@ class Pictures(Source):
         paths: Sequence[Path],
         names: Sequence[str],
         fps: float,
-        on_skip: OnSkip,
+        on_fault: OnFault,
         single: bool = False,
     ) -> None:
         self.count = len(paths)
@@ -37,7 +37,7 @@ class Pictures(Source):
         self.places = frozenset(paths) | frozenset(path.parent for path in paths)
         self._paths = paths
         self._names = names
-        self._on_skip = on_skip
+        self._on_fault = on_fault
         self._single = single
 
     def __iter__(self) -> Iterator[Frame]:
@@ -49,7 +49,7 @@ class Pictures(Source):
                 if self._single:
                     raise
                 self.errors += 1
-                self._on_skip(f"{error} (skipped)")
+                self._on_fault(f"{error} (skipped)")
                 continue
             yield Frame(image, name, index, index / self.fps)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 import time
 from collections.abc import Iterator
 
 import cv2
 
 from chromadock.errors import ChromadockError
+from chromadock.sources.address import without_secrets
 from chromadock.sources.base import Frame, OnFault
 from chromadock.sources.capture import Capture, frame_count
 from chromadock.sources.video import Video, open_remote_video
@@ -62,7 +62,7 @@ def open_camera(place: int | str) -> Live:
 
 
 def open_pipeline(text: str) -> Live:
-    """A GStreamer pipeline that ends in ``appsink``.
+    """A GStreamer pipeline that ends in ``appsink``; never shown, as it may hold passwords.
 
     Raises
     ------
@@ -72,11 +72,11 @@ def open_pipeline(text: str) -> Live:
     # The wheels on PyPI come without GStreamer, Debian's python3-opencv has it.
     if not cv2.videoio_registry.hasBackend(cv2.CAP_GSTREAMER):
         raise ChromadockError(
-            f"{text}: this OpenCV is built without GStreamer: "
+            "pipeline: this OpenCV is built without GStreamer: "
             "use Debian's python3-opencv, or give a device or URL"
         )
     capture = cv2.VideoCapture(text, cv2.CAP_GSTREAMER)
-    _check_open(capture, text, "try it with gst-launch-1.0; it must end in appsink")
+    _check_open(capture, "pipeline", "try it with gst-launch-1.0; it must end in appsink")
     return Live(capture, "pipeline", endless=False)
 
 
@@ -88,7 +88,7 @@ def open_url(url: str, on_fault: OnFault) -> Live | Video:
     ChromadockError
         Where it does not open.
     """
-    name = re.sub(r"//[^/@]*@", "//", url)  # no passwords in logs
+    name = without_secrets(url)
     capture = cv2.VideoCapture(url, cv2.CAP_FFMPEG)
     _check_open(capture, name, "check the address, and that the stream runs")
     if frame_count(capture) is not None:

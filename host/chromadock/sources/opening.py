@@ -10,9 +10,11 @@ from pathlib import Path
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
+from chromadock.sources.address import without_secrets
 from chromadock.sources.base import OnFault, Source, ignore
 from chromadock.sources.live import open_camera, open_pipeline, open_url
-from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture, natural_key
+from chromadock.sources.order import natural_key
+from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture
 from chromadock.sources.video import open_video
 
 _KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
@@ -61,9 +63,10 @@ def _not_a_path(text: str, fps: float, on_fault: OnFault, error: Exception) -> S
         return open_pipeline(text)
     if glob.has_magic(text):
         return _glob(text, fps, on_fault)
+    shown = without_secrets(text)
     if isinstance(error, PermissionError):
-        raise ChromadockError(f"{text}: permission denied: allow reading it")
-    raise ChromadockError(f"{text}: no such file or folder: {_KINDS}")
+        raise ChromadockError(f"{shown}: permission denied: allow reading it")
+    raise ChromadockError(f"{shown}: no such file or folder: {_KINDS}")
 
 
 def _file(path: Path, fps: float, on_fault: OnFault) -> Source:
@@ -99,7 +102,8 @@ def _glob(pattern: str, fps: float, on_fault: OnFault) -> Source:
     found = [Path(p) for p in glob.glob(pattern, recursive=True)]  # noqa: PTH207 - absolute, too
     found = [p for p in found if _is_visible_image(p)]
     if not found:
-        raise ChromadockError(f"{pattern}: no picture matches: check the pattern and the folder")
+        shown = without_secrets(pattern)
+        raise ChromadockError(f"{shown}: no picture matches: check the pattern and the folder")
     found.sort(key=lambda p: natural_key(str(p)))
     above = os.path.commonpath([p.parent for p in found])
     return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, on_fault)

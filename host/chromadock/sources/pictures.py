@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -52,12 +51,6 @@ class Pictures(Source):
                 self._on_fault(f"{error} (skipped)")
                 continue
             yield Frame(image, name, index, index / self.fps)
-
-
-def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
-    """Sorting key that puts ``9.png`` before ``10.png``."""
-    parts = re.split(r"([0-9]+)", name)
-    return tuple((0, int(p), p) if p.isdecimal() else (1, 0, p.lower()) for p in parts if p)
 
 
 def is_picture(path: Path) -> bool:

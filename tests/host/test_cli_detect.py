@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from simulation import chromadock
+from video_clips import cut, overwrite, patch, write_clip
 
 from chromadock.camera import CameraModel
 from chromadock.detector import Detector
@@ -343,27 +344,60 @@ def test_a_bad_option_is_refused_in_one_line_that_tells_the_mend(
     assert listed(folder) == before
 
 
-@pytest.mark.parametrize("overlay", ["out", "out.mp4"])
-def test_a_video_that_ends_mid_frame_is_refused_without_an_overlay(folder, overlay):
-    clip = save_video(folder / "clip.avi", [water(160, 120)] * 8)
-    whole = clip.read_bytes()
-    clip.write_bytes(whole[: len(whole) * 2 // 3])
+def test_a_video_that_ends_mid_frame_is_used_up_to_there(folder):
+    cut(write_clip(folder / "clip.avi", numbers=range(8)), 2 / 3)
+    done = detect("clip.avi", "--json", "--overlay", "out.mp4", cwd=folder)
+    assert done.returncode == 1
+    told = [json.loads(line)["frame"] for line in done.stdout.splitlines()]
+    assert told == list(range(len(told)))
+    assert 1 < len(told) < 8
+    report, summary = done.stderr.splitlines()
+    assert report.startswith("chromadock: error: clip.avi: the video is cut short after 0.")
+    assert summary == f"{len(told)} frames, 0 found, 0 skipped"
+    video = cv2.VideoCapture(str(folder / "out.mp4"))
+    assert video.get(cv2.CAP_PROP_FRAME_COUNT) == len(told)
+
+
+def test_a_video_that_lost_its_end_and_index_is_refused_without_an_overlay(folder):
+    cut(write_clip(folder / "clip.mp4", "mpeg4", numbers=range(8)), 2 / 3)
     before = listed(folder)
-    done = detect("clip.avi", "--json", "--overlay", overlay, cwd=folder)
-    refused(done, "clip.avi: the video is cut short", "copy it again")
+    done = detect("clip.mp4", "--json", "--overlay", "out.mp4", cwd=folder)
+    refused(done, "clip.mp4: the video is cut short", "copy it again")
+    assert done.stdout == ""
     assert listed(folder) == before
 
 
-@pytest.mark.parametrize("overlay", ["out", "out.mp4"])
-def test_a_video_with_a_hole_is_refused_without_an_overlay(folder, overlay):
-    clip = save_video(folder / "clip.avi", [water(160, 120)] * 8)
-    data = bytearray(clip.read_bytes())
-    data[len(data) // 2 : len(data) * 3 // 4] = bytes(len(data) * 3 // 4 - len(data) // 2)
-    clip.write_bytes(data)
-    before = listed(folder)
-    done = detect("clip.avi", "--json", "--overlay", overlay, cwd=folder)
-    refused(done, "of 8 frames could be decoded", "copy it again")
-    assert listed(folder) == before
+def test_a_bad_frame_of_a_video_is_reported_skipped_and_counted(folder, detect_here):
+    overwrite(write_clip(folder / "clip.avi", numbers=range(8)), 3)
+    done = detect_here("clip.avi", "--json", "--overlay", "out")
+    assert done.returncode == 1
+    kept = [0, 1, 2, 4, 5, 6, 7]
+    assert [json.loads(line)["frame"] for line in done.stdout.splitlines()] == kept
+    report, summary = done.stderr.splitlines()
+    assert report.startswith("chromadock: error: clip.avi: frame 3 at 0.150 s cannot be decoded: ")
+    assert report.endswith("(skipped)")
+    assert summary == "7 frames, 0 found, 1 skipped"
+    assert listed(folder / "out") == [f"{index:06d}.png" for index in kept]
+
+
+def test_a_video_of_more_frames_than_it_says_does_not_fit_into_a_picture(folder, detect_here):
+    # The header counts one frame, and the index that would count them is of another kind.
+    clip = write_clip(folder / "clip.avi", numbers=range(3))
+    patch(clip, b"strh", 4 + 32, (1).to_bytes(4, "little"))
+    patch(clip, b"idx1", -4, b"JUNK")
+    done = detect_here("clip.avi", "--json", "--overlay", "out.png")
+    refused(done, "out.png: one picture cannot hold many frames: give a folder or a .mp4")
+    assert not (folder / "out.png").exists()
+
+
+@pytest.mark.parametrize("overlay", ["10:11:12.mp4", "out"])
+def test_names_with_a_colon_are_names(folder, detect_here, overlay):
+    """FFmpeg takes what stands before a colon for a protocol."""
+    write_clip(folder / "2026-05-01T10:11:12.avi", numbers=range(3))
+    done = detect_here("2026-05-01T10:11:12.avi", "--json", "--overlay", overlay)
+    assert done.returncode == 0, done.stderr
+    assert len(done.stdout.splitlines()) == 3
+    assert (folder / overlay).exists()
 
 
 def test_a_frame_of_another_size_halfway_leaves_no_overlay(folder):

@@ -175,6 +175,17 @@ def test_the_camera_is_back_at_once_after_an_injection(dock, url, tmp_path):
     assert round(status_of(url).background_hue * 360 / 1536, 1) == 195.9
 
 
+def test_a_picture_that_cannot_be_injected_is_told_and_the_others_are(dock, url, tmp_path, capsys):
+    for name in ("1.png", "3.png"):
+        cv2.imwrite(str(tmp_path / name), np.full((120, 160, 3), (0, 200, 0), np.uint8))
+    (tmp_path / "2.png").write_bytes(b"words")
+    done = chromadock(capsys, "dock", "inject", tmp_path, "--port", url)
+    assert done.status == 1
+    assert [line.split(": ")[0] for line in done.out.splitlines()] == ["1.png", "3.png"]
+    (line,) = done.err.splitlines()
+    assert line.startswith(f"chromadock: error: {tmp_path / '2.png'}: not a whole picture")
+
+
 def test_rgb888_frames_can_be_injected(url, dock):
     with DockClient(Connection(url)) as client:
         pixels = bytes([10, 20, 200]) * (120 * 100)

@@ -10,7 +10,6 @@ from PIL import Image
 from chromadock.errors import ChromadockError
 from chromadock.sources import open_source
 from chromadock.sources.container import missing_bytes
-from chromadock.sources.video import Video
 
 RGB = (10, 120, 230)
 
@@ -149,7 +148,7 @@ def test_a_truncated_picture_is_reported_skipped_and_counted(tmp_path, suffix, s
     whole = broken.read_bytes()
     broken.write_bytes(whole[: int(len(whole) * share)])
     lines = []
-    with open_source(str(tmp_path), fps=10, on_skip=lines.append) as source:
+    with open_source(str(tmp_path), fps=10, on_fault=lines.append) as source:
         frames = list(source)
         assert source.errors == 1
     assert [f.index for f in frames] == [0, 2]
@@ -186,29 +185,6 @@ def test_a_video_gives_its_frames_at_their_times(tmp_path, suffix):
     assert frames[6].image[:, 34:].mean() < 80
 
 
-@pytest.mark.parametrize("suffix", [".mp4", ".avi", ".mkv"])
-@pytest.mark.parametrize("share", [0.5, 0.9, 0.999])
-def test_a_video_that_ends_mid_frame_is_refused(tmp_path, suffix, share):
-    path = save_video(tmp_path / f"clip{suffix}")
-    assert missing_bytes(path) == 0
-    whole = path.read_bytes()
-    path.write_bytes(whole[: int(len(whole) * share)])
-    with pytest.raises(ChromadockError, match="cut short") as raised:
-        frames_of(path)
-    assert str(raised.value).startswith(f"{path}: ")
-
-
-@pytest.mark.parametrize("suffix", [".mp4", ".avi"])
-def test_a_video_with_a_hole_is_refused_at_its_end(tmp_path, suffix):
-    path = save_video(tmp_path / f"clip{suffix}")
-    data = bytearray(path.read_bytes())
-    middle = len(data) // 2
-    data[middle : middle + len(data) // 4] = bytes(len(data) // 4)
-    path.write_bytes(data)
-    with pytest.raises(ChromadockError, match=r"only \d+ of 12 frames could be decoded"):
-        frames_of(path)
-
-
 def test_a_stream_container_of_unknown_length_is_not_called_cut_short(tmp_path):
     path = save_video(tmp_path / "clip.mkv")
     data = path.read_bytes()
@@ -235,47 +211,6 @@ def test_a_stream_container_of_unknown_length_is_not_called_cut_short(tmp_path):
 def test_containers_tell_what_is_missing(tmp_path, head, missing):
     (tmp_path / "clip").write_bytes(head)
     assert missing_bytes(tmp_path / "clip") == missing
-
-
-class FakeVideo:
-    """A video of 25 frames a second that declares 100 frames and has ``frames``."""
-
-    def __init__(self, frames):
-        self._frames = frames
-        self._next = 0
-
-    def get(self, what):
-        if what == cv2.CAP_PROP_POS_MSEC:
-            return (self._next - 1) * 40.0
-        return {cv2.CAP_PROP_FPS: 25.0, cv2.CAP_PROP_FRAME_COUNT: 100.0}[what]
-
-    def read(self):
-        self._next += 1
-        return self._next <= self._frames, np.zeros((6, 8, 3), np.uint8)
-
-
-@pytest.mark.parametrize(("frames", "exact"), [(100, True), (100, False), (95, False)])
-def test_a_guessed_number_of_frames_may_be_a_little_too_high(frames, exact):
-    assert len(list(Video(FakeVideo(frames), "clip", "clip", exact))) == frames
-
-
-@pytest.mark.parametrize(("frames", "exact"), [(99, True), (90, False)])
-def test_a_video_that_lacks_frames_is_refused(frames, exact):
-    with pytest.raises(ChromadockError, match=f"only {frames} of 100 frames"):
-        list(Video(FakeVideo(frames), "clip", "clip", exact))
-
-
-def test_a_video_without_a_frame_is_refused():
-    with pytest.raises(ChromadockError, match="no frame could be decoded"):
-        list(Video(FakeVideo(0), "clip", "clip", exact=False))
-
-
-def test_frames_without_a_time_get_the_next_one():
-    video = FakeVideo(3)
-    video.get = lambda what: 0.0 if what == cv2.CAP_PROP_POS_MSEC else 25.0
-    frames = iter(Video(video, "clip", "clip", exact=True))
-    times = [next(frames).time_s for _ in range(3)]
-    assert times == pytest.approx([0, 0.04, 0.08])
 
 
 # --- what is no source ---

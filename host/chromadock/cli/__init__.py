@@ -19,15 +19,16 @@ from chromadock.cli.demo import demo
 from chromadock.cli.detect import detect
 from chromadock.cli.dock import dock
 from chromadock.cli.evaluate import evaluate
+from chromadock.cli.exit_status import (
+    EXIT_BAD_INPUT,
+    EXIT_BROKEN_PIPE,
+    EXIT_INTERRUPTED,
+    EXIT_TERMINATED,
+)
 from chromadock.cli.simulate import simulate
 from chromadock.errors import ChromadockError
 from chromadock.quiet import quiet_libraries
 from chromadock.text import one_line
-
-EXIT_BAD_INPUT = 2
-EXIT_INTERRUPTED = 128 + signal.SIGINT
-EXIT_TERMINATED = 128 + signal.SIGTERM
-EXIT_BROKEN_PIPE = 128 + signal.SIGPIPE
 
 # Newer typers carry a copy of click, older ones import it: both raise this for a slip in
 # the arguments.
@@ -73,7 +74,7 @@ def _root(
 def main() -> NoReturn:
     """Run the command line; the only place that turns faults into a line and a status.
 
-    Exit status: 0 all well, 1 some pictures were skipped, 2 the input or the arguments
+    Exit status: 0 all well, 1 some frames could not be read, 2 the input or the arguments
     are at fault, 130 Ctrl-C, 141 the reader of the output went away, 143 terminated.
     """
     signal.signal(signal.SIGTERM, _terminate)

@@ -114,5 +114,5 @@ def detect(
         fallback_hue_deg=fallback_hue,
     )
     report = Report(json=json, calibrated=model is not None)
-    frames = open_source(source, fps, report.skipped, report.notice, delay)
+    frames = open_source(source, fps, report.fault, report.notice, delay)
     raise typer.Exit(detect_frames(frames, detector, model, geometry, overlay, out or [], report))

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from chromadock.camera import CameraModel
+from chromadock.cli.exit_status import EXIT_INTERRUPTED, EXIT_SKIPPED
 from chromadock.cli.report import Report
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
@@ -15,9 +16,6 @@ from chromadock.output import Guarded, OverlayOutput, ResultOutput, open_output,
 from chromadock.overlay import draw_overlay
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame, Source
-
-EXIT_SKIPPED = 1
-EXIT_INTERRUPTED = 130
 
 
 def detect_frames(
@@ -42,10 +40,10 @@ def detect_frames(
         ]
         stack.enter_context(report.progress(frames.count))
         interrupted = _run(frames, detector, model, geometry, pictures, results, report)
-    report.summary(frames.dropped)
+    report.summary(frames.errors, frames.dropped)
     if interrupted:
         return EXIT_INTERRUPTED
-    return EXIT_SKIPPED if frames.errors else 0
+    return EXIT_SKIPPED if frames.errors or frames.cut_short else 0
 
 
 def _check_apart(overlay: Path, frames: Source) -> None:

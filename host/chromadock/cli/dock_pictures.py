@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Log, Port, Timeout, connect
+from chromadock.cli.exit_status import EXIT_SKIPPED
 from chromadock.errors import ChromadockError
 
 
@@ -55,14 +57,22 @@ def inject(
     from chromadock.link.rgb565 import HEIGHT, WIDTH, to_qqvga, to_rgb565
     from chromadock.sources import open_source
 
+    whole = True
     for source in frames:  # all of them, before anything is sent
         open_source(source).close()
     with connect(port, timeout, baud, log) as dock:
         try:
             for source in frames:
-                with open_source(source) as opened:
+                with open_source(source, on_fault=_tell) as opened:
                     for frame in opened:
                         status = dock.inject(to_rgb565(to_qqvga(frame.image)), WIDTH, HEIGHT)
                         print(f"{frame.name}: {line(status).strip()}", flush=True)
+                    whole = whole and not (opened.errors or opened.cut_short)
         finally:
             dock.end_injection()
+    if not whole:
+        raise typer.Exit(EXIT_SKIPPED)
+
+
+def _tell(fault: str) -> None:
+    print(f"chromadock: error: {fault}", file=sys.stderr, flush=True)

@@ -54,7 +54,6 @@ class Report:
         self._frames = 0
         self._found = 0
         self._tracked = 0
-        self._skipped = 0
         self._off: list[complex] = []
         self._clipped = 0
         self._misfits = 0
@@ -82,7 +81,7 @@ class Report:
         self._found += detection.found
         self._tracked += detection.track is not None and detection.track.state == "tracking"
         if self._bar is not None:
-            self._bar.advance(self._bar.task_ids[0])
+            self._bar.update(self._bar.task_ids[0], completed=frame.index + 1)
 
     def _advise(self, detection: Detection) -> None:
         """Say once what several frames have shown to be amiss."""
@@ -120,24 +119,22 @@ class Report:
                     f"lock white balance and gain {mend}"
                 )
 
-    def skipped(self, line: str) -> None:
-        """Tell of a picture that could not be read."""
-        self._skipped += 1
+    def fault(self, line: str) -> None:
+        """Tell of what could not be read."""
         self._aside(f"error: {line}")
-        if self._bar is not None:
-            self._bar.advance(self._bar.task_ids[0])
 
     def notice(self, line: str) -> None:
         """Tell of something that went wrong or right with a source, whichever thread it is."""
         self._aside(line)
 
-    def summary(self, dropped: int = 0) -> None:
-        """The last line; of a live source, how many frames were ``dropped`` for newer ones."""
+    def summary(self, skipped: int, dropped: int) -> None:
+        """The last line.
+
+        ``skipped`` frames could not be read; ``dropped`` ones of a live source gave way to newer
+        ones.
+        """
         tracked = f"{self._tracked} tracked, " if self._tracked else ""
-        words = (
-            f"{plural(self._frames, 'frame')}, {self._found} found, {tracked}"
-            f"{self._skipped} skipped"
-        )
+        words = f"{plural(self._frames, 'frame')}, {self._found} found, {tracked}{skipped} skipped"
         if self._ages_s:
             median, most = np.quantile(self._ages_s, (0.5, 0.99)) * 1000
             words += (

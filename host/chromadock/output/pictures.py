@@ -25,6 +25,10 @@ class PictureFile(OverlayOutput):
 
     def write(self, picture: NDArray[np.uint8], name: str, index: int) -> None:
         """Write the picture under the temporary name."""
+        if self._partial.exists():  # the number of frames was a guess
+            raise ChromadockError(
+                f"{self._path}: one picture cannot hold many frames: give a folder or a .mp4"
+            )
         _write_picture(self._partial, picture, self._path)
 
     def keep(self) -> None:

@@ -21,7 +21,8 @@ class VideoOutput(OverlayOutput):
 
     def __init__(self, path: Path, fps: float) -> None:
         self._path = path
-        self._partial = partial_name(path)
+        # FFmpeg takes what stands before a colon for a protocol, but not in a whole path.
+        self._partial = partial_name(path).absolute()
         self._fps = fps
         self._writer: cv2.VideoWriter | None = None
         self._size = (0, 0)

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from chromadock.errors import ChromadockError
 from chromadock.sim.sensor import Sensor
-from chromadock.sources.pictures import is_picture, natural_key
+from chromadock.sources.order import natural_key
+from chromadock.sources.pictures import is_picture
 from chromadock.sources.still import read_still
 
 Image = NDArray[np.float32]

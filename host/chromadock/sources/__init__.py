@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from chromadock.sources.base import Frame, OnSkip, Source, ignore
+from chromadock.sources.base import Frame, OnFault, Source, ignore
 from chromadock.sources.opening import open_source
 
-__all__ = ["Frame", "OnSkip", "Source", "ignore", "open_source"]
+__all__ = ["Frame", "OnFault", "Source", "ignore", "open_source"]

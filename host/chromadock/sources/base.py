@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from chromadock.choices import DEFAULT_FPS
 
-OnSkip = Callable[[str], None]
-"""Takes one line about a picture that was skipped."""
+OnFault = Callable[[str], None]
+"""Takes one line about a picture that was skipped, or a video that ends too early."""
 
 
 def ignore(_line: str) -> None:
-    """The ``OnSkip`` of a caller who only looks at ``Source.errors``."""
+    """The ``OnFault`` of a caller who looks at ``Source.errors`` and ``cut_short``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,8 @@ class Source(ABC):
     Attributes
     ----------
     count
-        Number of frames, or None where nobody knows.
+        About how many frames there are, or None where nobody knows; a video's header promises
+        nothing.
     fps
         Nominal frames a second.
     live
@@ -48,6 +49,8 @@ class Source(ABC):
         Pictures skipped so far because they could not be read.
     dropped
         Pictures of a live source so far that a newer one came after before anybody asked.
+    cut_short
+        True once it is found that the source breaks off before its end.
     places
         Files it reads, and folders of pictures; an output must not go there.
     """
@@ -57,6 +60,7 @@ class Source(ABC):
     live: bool = False
     errors: int = 0
     dropped: int = 0
+    cut_short: bool = False
     places: frozenset[Path] = frozenset()
 
     @abstractmethod

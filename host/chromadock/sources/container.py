@@ -1,18 +1,22 @@
 """Tells from a video file's own headers whether its end is missing.
 
-FFmpeg decodes what is left of a video that was cut short and says nothing that OpenCV
-passes on, so the container's sizes are compared with the file's.
+FFmpeg decodes what is left of a video that was cut short and says nothing, so the container's
+sizes are compared with the file's.  They count bytes, so they say nothing of how many frames
+there are: neither does a number of frames in a header, nor a duration.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-_MP4_FIRST = {b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide"}
+_MP4_FIRST = {b"ftyp", b"styp", b"moov", b"mdat", b"free", b"skip", b"wide"}
 _EBML = b"\x1a\x45\xdf\xa3"
 _SEGMENT = b"\x18\x53\x80\x67"
+_RIFF_SLACK = 8
+"""Some recorders write the size of the file where that of what follows these bytes is due."""
 
 
 def missing_bytes(path: Path) -> int:
@@ -27,7 +31,7 @@ def missing_bytes(path: Path) -> int:
         if head[4:8] in _MP4_FIRST:
             announced = _mp4_end(file, size)
         elif head[:4] == b"RIFF":
-            announced = _riff_end(head)
+            announced = _riff_end(file, size)
         elif head[:4] == _EBML:
             announced = _matroska_end(file)
         else:
@@ -35,35 +39,61 @@ def missing_bytes(path: Path) -> int:
     return max(0, announced - size)
 
 
-def counts_frames(path: Path) -> bool:
-    """True where the container stores its number of frames, False where OpenCV guesses
-    it from the duration."""
+def whole_boxes(path: Path) -> int:
+    """Where the last box of an MP4 ends that is all there, in bytes from its start; 0 for others.
+
+    FFmpeg reads an MP4 of fragments whose last piece of index is cut only as far as this.
+    """
+    size = path.stat().st_size
     with path.open("rb") as file:
-        head = file.read(12)
-    return head[4:8] in _MP4_FIRST or head[:4] == b"RIFF"
+        if file.read(8)[4:8] not in _MP4_FIRST:
+            return 0
+        return max((end for end in _mp4_box_ends(file, size) if end <= size), default=0)
 
 
 def _mp4_end(file: BinaryIO, size: int) -> int:
-    """Where the last top level box ends: each has 32 bits of size and 4 letters."""
+    """Where the last top level box ends."""
+    return max(_mp4_box_ends(file, size), default=0)
+
+
+def _mp4_box_ends(file: BinaryIO, size: int) -> Iterator[int]:
+    """Where the top level boxes end: each has 32 bits of size and 4 letters."""
     position = 0
     while position + 8 <= size:
         file.seek(position)
         head = file.read(16)
         length = int.from_bytes(head[:4], "big")
+        if not _is_name(head[4:8]):  # padding after the last box
+            return
         if length == 1:  # the real size follows in 64 bits
             length = int.from_bytes(head[8:16], "big")
         if length == 0:  # up to the end of the file
-            return size
+            length = size - position
         if length < 8:
-            return 0
+            return
         position += length
-    return position
+        yield position
 
 
-def _riff_end(head: bytes) -> int:
-    """Where the first RIFF chunk ends; recorders that were switched off leave 0 there."""
-    length = int.from_bytes(head[4:8], "little")
-    return 8 + length if length else 0
+def _riff_end(file: BinaryIO, size: int) -> int:
+    """Where the last RIFF chunk ends; a large AVI has several, one after the other.
+
+    Recorders that were switched off leave 0 as the size.
+    """
+    position = 0
+    while position + 12 <= size:
+        file.seek(position)
+        head = file.read(8)
+        length = int.from_bytes(head[4:8], "little")
+        if head[:4] != b"RIFF" or length == 0:
+            return position
+        position += 8 + length + length % 2
+    return position if position > size + _RIFF_SLACK else 0
+
+
+def _is_name(letters: bytes) -> bool:
+    """True for four printable letters of ASCII."""
+    return len(letters) == 4 and all(0x20 <= letter < 0x7F for letter in letters)
 
 
 def _matroska_end(file: BinaryIO) -> int:

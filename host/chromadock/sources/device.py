@@ -62,7 +62,7 @@ def open_device(place: int | str, name: str) -> Device:
 
 
 def open_gstreamer(text: str) -> Device:
-    """A GStreamer pipeline that ends in ``appsink``.
+    """A GStreamer pipeline that ends in ``appsink``; never shown, as it may hold passwords.
 
     Raises
     ------
@@ -72,11 +72,11 @@ def open_gstreamer(text: str) -> Device:
     # The wheels on PyPI come without GStreamer, Debian's python3-opencv has it.
     if not cv2.videoio_registry.hasBackend(cv2.CAP_GSTREAMER):
         raise ChromadockError(
-            f"{text}: this OpenCV is built without GStreamer: "
+            "pipeline: this OpenCV is built without GStreamer: "
             "use Debian's python3-opencv, or give a device or URL"
         )
     capture = cv2.VideoCapture(text, cv2.CAP_GSTREAMER)
-    return _opened(capture, text, "try it with gst-launch-1.0; it must end in appsink")
+    return _opened(capture, "pipeline", "try it with gst-launch-1.0; it must end in appsink")
 
 
 def _opened(capture: cv2.VideoCapture, name: str, mend: str) -> Device:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import Frame, OnSkip, Source, ignore
+from chromadock.sources.base import Frame, OnFault, Source, ignore
 from chromadock.sources.capture_time import CaptureTime
 from chromadock.sources.grabber import Grabber
 
@@ -50,7 +50,7 @@ class Live(Source):
         self,
         open_grabber: Callable[[], Grabber],
         name: str,
-        tell: OnSkip = ignore,
+        tell: OnFault = ignore,
         delay_s: float = 0.0,
     ) -> None:
         self._open = open_grabber

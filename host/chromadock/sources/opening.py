@@ -11,10 +11,12 @@ from pathlib import Path
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import OnSkip, Source, ignore
+from chromadock.sources.address import without_secrets
+from chromadock.sources.base import OnFault, Source, ignore
 from chromadock.sources.device import open_device, open_gstreamer
 from chromadock.sources.live import Live
-from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture, natural_key
+from chromadock.sources.order import natural_key
+from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture
 from chromadock.sources.urls import open_url
 from chromadock.sources.video import open_video
 
@@ -27,8 +29,8 @@ _KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL
 def open_source(
     text: str,
     fps: float = DEFAULT_FPS,
-    on_skip: OnSkip = ignore,
-    tell: OnSkip = ignore,
+    on_fault: OnFault = ignore,
+    tell: OnFault = ignore,
     delay_s: float = 0.0,
 ) -> Source:
     """Open what ``text`` names.
@@ -41,8 +43,8 @@ def open_source(
         exists as a file wins over the other readings, except for bare camera indices.
     fps
         Frames a second of a folder or glob of pictures.
-    on_skip
-        Called with one line for each picture that is skipped.
+    on_fault
+        Called with one line for each picture that is skipped, and for a video's missing end.
     tell
         Called with one line when a live source goes away, and when it is back; by its thread.
     delay_s
@@ -67,34 +69,35 @@ def open_source(
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
-        live = _live(text, tell, delay_s)
-        return live or _not_a_path(text, fps, on_skip, error)
+        live = _live(text, on_fault, tell, delay_s)
+        return live or _not_a_path(text, fps, on_fault, error)
     if stat.S_ISDIR(mode):
-        return _folder(path, fps, on_skip)
+        return _folder(path, fps, on_fault)
     if stat.S_ISCHR(mode):
         return Live(partial(open_device, text, text), text, tell, delay_s)
-    return _file(path, fps, on_skip)
+    return _file(path, fps, on_fault)
 
 
-def _live(text: str, tell: OnSkip, delay_s: float) -> Source | None:
+def _live(text: str, on_fault: OnFault, tell: OnFault, delay_s: float) -> Source | None:
     """What is no path and delivers frames by itself."""
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
-        return open_url(text, tell, delay_s)
+        return open_url(text, on_fault, tell, delay_s)
     if "!" in text:
         return Live(partial(open_gstreamer, text), "pipeline", tell, delay_s)
     return None
 
 
-def _not_a_path(text: str, fps: float, on_skip: OnSkip, error: Exception) -> Source:
+def _not_a_path(text: str, fps: float, on_fault: OnFault, error: Exception) -> Source:
     """Globs; anything else was meant as a path."""
     if glob.has_magic(text):
-        return _glob(text, fps, on_skip)
+        return _glob(text, fps, on_fault)
+    shown = without_secrets(text)
     if isinstance(error, PermissionError):
-        raise ChromadockError(f"{text}: permission denied: allow reading it")
-    raise ChromadockError(f"{text}: no such file or folder: {_KINDS}")
+        raise ChromadockError(f"{shown}: permission denied: allow reading it")
+    raise ChromadockError(f"{shown}: no such file or folder: {_KINDS}")
 
 
-def _file(path: Path, fps: float, on_skip: OnSkip) -> Source:
+def _file(path: Path, fps: float, on_fault: OnFault) -> Source:
     try:
         with path.open("rb") as file:
             empty = not file.read(1)
@@ -105,11 +108,11 @@ def _file(path: Path, fps: float, on_skip: OnSkip) -> Source:
     if empty:
         raise ChromadockError(f"{path}: the file is empty: copy it again")
     if is_picture(path):
-        return Pictures([path], [path.name], fps, on_skip, single=True)
-    return open_video(path)
+        return Pictures([path], [path.name], fps, on_fault, single=True)
+    return open_video(path, on_fault)
 
 
-def _folder(path: Path, fps: float, on_skip: OnSkip) -> Source:
+def _folder(path: Path, fps: float, on_fault: OnFault) -> Source:
     try:
         inside = [p for p in path.iterdir() if _is_visible_image(p)]
     except OSError as error:
@@ -120,17 +123,18 @@ def _folder(path: Path, fps: float, on_skip: OnSkip) -> Source:
     if not inside:
         suffixes = " ".join(sorted(IMAGE_SUFFIXES))
         raise ChromadockError(f"{path}: no pictures in this folder: it needs some of {suffixes}")
-    return Pictures(inside, [p.name for p in inside], fps, on_skip)
+    return Pictures(inside, [p.name for p in inside], fps, on_fault)
 
 
-def _glob(pattern: str, fps: float, on_skip: OnSkip) -> Source:
+def _glob(pattern: str, fps: float, on_fault: OnFault) -> Source:
     found = [Path(p) for p in glob.glob(pattern, recursive=True)]  # noqa: PTH207 - absolute, too
     found = [p for p in found if _is_visible_image(p)]
     if not found:
-        raise ChromadockError(f"{pattern}: no picture matches: check the pattern and the folder")
+        shown = without_secrets(pattern)
+        raise ChromadockError(f"{shown}: no picture matches: check the pattern and the folder")
     found.sort(key=lambda p: natural_key(str(p)))
     above = os.path.commonpath([p.parent for p in found])
-    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, on_skip)
+    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, on_fault)
 
 
 def _is_visible_image(path: Path) -> bool:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from PIL import Image, UnidentifiedImageError
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import Frame, OnSkip, Source
+from chromadock.sources.base import Frame, OnFault, Source
 from chromadock.sources.still import read_still
 
 IMAGE_SUFFIXES = frozenset(
@@ -29,7 +28,7 @@ class Pictures(Source):
         paths: Sequence[Path],
         names: Sequence[str],
         fps: float,
-        on_skip: OnSkip,
+        on_fault: OnFault,
         single: bool = False,
     ) -> None:
         self.count = len(paths)
@@ -37,7 +36,7 @@ class Pictures(Source):
         self.places = frozenset(paths) | frozenset(path.parent for path in paths)
         self._paths = paths
         self._names = names
-        self._on_skip = on_skip
+        self._on_fault = on_fault
         self._single = single
 
     def __iter__(self) -> Iterator[Frame]:
@@ -49,15 +48,9 @@ class Pictures(Source):
                 if self._single:
                     raise
                 self.errors += 1
-                self._on_skip(f"{error} (skipped)")
+                self._on_fault(f"{error} (skipped)")
                 continue
             yield Frame(image, name, index, index / self.fps)
-
-
-def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
-    """Sorting key that puts ``9.png`` before ``10.png``."""
-    parts = re.split(r"([0-9]+)", name)
-    return tuple((0, int(p), p) if p.isdecimal() else (1, 0, p.lower()) for p in parts if p)
 
 
 def is_picture(path: Path) -> bool:

@@ -5,29 +5,27 @@ from __future__ import annotations
 import re
 from functools import partial
 
-import cv2
-
-from chromadock.sources.base import OnSkip, Source
-from chromadock.sources.capture import frame_count
+from chromadock.sources.address import without_secrets
+from chromadock.sources.base import OnFault, Source
 from chromadock.sources.live import Live
 from chromadock.sources.stream import open_stream
-from chromadock.sources.video import Video
+from chromadock.sources.video import open_remote_video
 
 _SERVES_FILES = re.compile(r"(https?|ftps?|file):", re.IGNORECASE)
 
 
-def open_url(url: str, tell: OnSkip, delay_s: float) -> Source:
-    """A network stream, or a video file behind a URL.
+def open_url(url: str, on_fault: OnFault, tell: OnFault, delay_s: float) -> Source:
+    """A network stream, or a video file behind a URL, which is one that has an end.
 
     Raises
     ------
     ChromadockError
         Where it does not open.
     """
-    name = re.sub(r"//[^/@]*@", "//", url)  # no passwords in logs
+    name = without_secrets(url)
     if _SERVES_FILES.match(url):
-        capture = cv2.VideoCapture(url, cv2.CAP_FFMPEG)
-        if capture.isOpened() and frame_count(capture) is not None:
-            return Video(capture, name, name, exact=False)
-        capture.release()
+        video = open_remote_video(url, name, on_fault)
+        if video.count is not None:
+            return video
+        video.close()
     return Live(partial(open_stream, url, name), name, tell, delay_s)

@@ -2,83 +2,251 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from pathlib import Path
 
+import av
 import cv2
+import numpy as np
+from av.container import InputContainer
+from av.video.frame import VideoFrame
+from av.video.reformatter import VideoReformatter
+from av.video.stream import VideoStream
+from numpy.typing import NDArray
 
+from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import Frame
-from chromadock.sources.capture import Capture, frame_count
-from chromadock.sources.container import counts_frames, missing_bytes
+from chromadock.sources.base import Frame, OnFault, Source
+from chromadock.sources.container import missing_bytes, whole_boxes
+from chromadock.sources.decoding import Decoding, Lost
+from chromadock.text import plural
 
-_TAIL_S = 0.25
-"""Sound often outlasts the picture by this much, and makes a guessed count too high."""
+_URL_TIMEOUT_S = 30.0
+_TURNS = {
+    90: cv2.ROTATE_90_COUNTERCLOCKWISE,
+    -90: cv2.ROTATE_90_CLOCKWISE,
+    180: cv2.ROTATE_180,
+    -180: cv2.ROTATE_180,
+}
+"""By the degrees, counterclockwise, that a phone wrote beside its upright or flipped frames."""
 
 
-class Video(Capture):
-    """A video with an end, each frame at its own timestamp.
+class Video(Source):
+    """A video with an end, each frame at its own time stamp, counted from the stream's start.
 
-    At the end it raises ``ChromadockError`` where fewer frames could be decoded than were
-    declared.  ``exact`` says that the declared number is not a guess.
+    Frames that cannot be decoded are reported, counted in ``errors`` and left out; their index
+    stays free.  Whether the end is missing is told after the last frame that there is.
+
+    Parameters
+    ----------
+    container
+        As PyAV opened it; this closes it.
+    stream
+        The one that is shown.
+    name
+        Stands in frames.
+    place
+        Stands in messages.
+    on_fault
+        Called with one line for each fault.
+    missing
+        How many bytes are announced beyond the file's end.
     """
 
-    def __init__(self, capture: cv2.VideoCapture, name: str, place: str, exact: bool) -> None:
-        super().__init__(capture, name)
-        self.count = frame_count(capture)
+    def __init__(
+        self,
+        container: InputContainer,
+        stream: VideoStream,
+        name: str,
+        place: str,
+        on_fault: OnFault,
+        missing: int = 0,
+    ) -> None:
+        rate = stream.average_rate or stream.base_rate
+        self.fps = float(rate) if rate and 0 < rate <= 1000 else DEFAULT_FPS
+        self.count = _expected(container, stream, self.fps)
+        self._container = container
+        self._stream = stream
+        self._name = name
         self._place = place
-        self._exact = exact
+        self._on_fault = on_fault
+        self._missing = missing
+        self._listed = sum(entry.size > 0 for entry in stream.index_entries)
 
     def __iter__(self) -> Iterator[Frame]:
-        last = -1.0
-        index = 0
-        while (image := self.read()) is not None:
-            stamp = self._capture.get(cv2.CAP_PROP_POS_MSEC) / 1000
-            if not math.isfinite(stamp) or stamp <= last:  # raw streams carry no time
-                stamp = 0.0 if index == 0 else last + 1 / self.fps
-            yield Frame(image, self._name, index, stamp)
-            last = stamp
-            index += 1
-        self._check_end(index, last)
+        decoding = Decoding(self._container, self._stream)
+        converter = VideoReformatter()
+        lost: list[tuple[int, float]] = []  # since the last frame
+        decoded, last, shown = 0, -1.0, 0.0
+        for index, item in enumerate(decoding):
+            last = self._time(item.pts, last, index)
+            if isinstance(item, Lost):
+                lost.append((index, last))
+            else:
+                self._tell(lost)
+                lost = []
+                decoded += 1
+                shown = last
+                yield Frame(_bgr(item, converter), self._name, index, last)
+        if not decoded:
+            raise self._nothing()
+        if self._missing or decoding.broken_off:
+            self._tell_cut(decoded, shown, decoding.broken_off)
+        else:
+            self._tell(lost)
+            self._tell_gaps(decoding.packets)
 
-    def _check_end(self, decoded: int, last_s: float) -> None:
-        if decoded == 0:
-            raise ChromadockError(
-                f"{self._place}: no frame could be decoded: convert the video with ffmpeg"
-            )
-        if self.count is None or decoded >= self.count:
+    def _time(self, pts: int | None, last_s: float, index: int) -> float:
+        """Seconds from the stream's start; a frame's length after the last where none is told,
+        as in raw streams, or where it would not be later."""
+        start, base = self._stream.start_time, self._stream.time_base
+        if pts is not None and base is not None:
+            time_s = float((pts - (start or 0)) * base)
+            if time_s > last_s and time_s >= 0:
+                return time_s
+        return 0.0 if index == 0 else last_s + 1 / self.fps
+
+    def _nothing(self) -> ChromadockError:
+        if self._missing:
+            return _nothing_left(self._place, self._missing)
+        return ChromadockError(
+            f"{self._place}: no frame could be decoded: convert the video with ffmpeg"
+        )
+
+    def _tell(self, lost: list[tuple[int, float]]) -> None:
+        """Report frames in a row that could not be decoded."""
+        if not lost:
             return
-        short_s = self.count / self.fps - (last_s + 1 / self.fps)
-        if self._exact or short_s > _TAIL_S:
-            raise ChromadockError(
-                f"{self._place}: only {decoded} of {self.count} frames could be decoded: "
-                "the video is damaged, so copy it again or repair it with ffmpeg"
+        self.errors += len(lost)
+        (first, start_s), (last, end_s) = lost[0], lost[-1]
+        which = f"frame {first} at {start_s:.3f} s"
+        if len(lost) > 1:
+            which = f"frames {first} to {last} from {start_s:.3f} to {end_s:.3f} s"
+        self._on_fault(
+            f"{self._place}: {which} cannot be decoded: copy the video again, "
+            "or do without (skipped)"
+        )
+
+    def _tell_cut(self, frames: int, last_s: float, reason: str | None) -> None:
+        """Report that the end is missing."""
+        self.cut_short = True
+        why = f"{self._missing} bytes are missing" if self._missing else reason
+        self._on_fault(
+            f"{self._place}: the video is cut short after {last_s:.3f} s ({why}): "
+            f"{plural(frames, 'frame')} could be used; copy it again for the rest"
+        )
+
+    def _tell_gaps(self, packets: int) -> None:
+        """Report what the container's index lists and the container does not have."""
+        if packets < self._listed:
+            gone = self._listed - packets
+            self.errors += gone
+            self._on_fault(
+                f"{self._place}: {gone} of the {self._listed} frames in the video's index are "
+                "not where it says: copy it again, or do without (skipped)"
             )
 
+    def close(self) -> None:
+        """Let go of the file."""
+        self._container.close()
 
-def open_video(path: Path) -> Video:
+
+def open_video(path: Path, on_fault: OnFault) -> Video:
     """Open a video file.
 
     Raises
     ------
     ChromadockError
-        Where it is cut short or no video at all.
+        Where it is no video, or so little of one that no frame can be read.
     """
     missing = missing_bytes(path)
-    if missing:
-        raise ChromadockError(
-            f"{path}: the video is cut short ({missing} bytes are missing): "
-            "copy it again, or repair it with ffmpeg"
-        )
-    capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
-    if _is_prose(path) or not capture.isOpened():
+    container = None if _is_prose(path) else _open_file(path, missing)
+    stream = None if container is None else _shown(container)
+    if container is None or stream is None:
+        if missing:  # an MP4 often has its index at its end
+            raise _nothing_left(str(path), missing)
         raise ChromadockError(
             f"{path}: cannot be read as a video or picture: check that it is one, and whole"
         )
-    video = Video(capture, path.name, str(path), counts_frames(path))
+    video = Video(container, stream, path.name, str(path), on_fault, missing)
     video.places = frozenset([path])
     return video
+
+
+def open_remote_video(url: str, name: str, on_fault: OnFault) -> Video:
+    """Open a video with an end behind a URL; messages have ``name`` in its place.
+
+    Raises
+    ------
+    ChromadockError
+        Where it does not open.
+    """
+    try:
+        container = _open(url, timeout=_URL_TIMEOUT_S)
+    except av.FFmpegError as error:
+        raise ChromadockError(
+            f"{name}: does not open ({error.strerror}): check the address, and that it answers"
+        ) from None
+    stream = _shown(container)
+    if stream is None:
+        raise ChromadockError(f"{name}: has no picture that can be decoded: check the address")
+    return Video(container, stream, name, name, on_fault)
+
+
+def _open_file(path: Path, missing: int) -> InputContainer | None:
+    # FFmpeg takes what stands before a colon for a protocol, but not in a whole path.
+    places = [str(path.absolute())]
+    if missing and (end := whole_boxes(path)):
+        places.append(f"subfile,,start,0,end,{end},,:{places[0]}")
+    for place in places:
+        try:
+            return _open(place)
+        except av.FFmpegError:
+            continue
+    return None
+
+
+def _open(place: str, timeout: float | None = None) -> InputContainer:
+    # Cameras write their makers' names in any encoding.
+    return av.open(place, "r", metadata_errors="replace", timeout=timeout)
+
+
+def _shown(container: InputContainer) -> VideoStream | None:
+    """The stream to look at; None, and the container closed, where none can be decoded."""
+    stream = container.streams.best("video")
+    if isinstance(stream, VideoStream) and stream.codec_context is not None:
+        return stream
+    container.close()
+    return None
+
+
+def _nothing_left(place: str, missing: int) -> ChromadockError:
+    return ChromadockError(
+        f"{place}: the video is cut short ({missing} bytes are missing), "
+        "and nothing of what is left can be read: copy it again"
+    )
+
+
+def _expected(container: InputContainer, stream: VideoStream, fps: float) -> int | None:
+    """About how many frames there are; neither the header's number nor the duration, which
+    may be the sound's, is a promise."""
+    if stream.frames > 0:
+        return stream.frames
+    if stream.duration is not None and stream.time_base is not None:
+        seconds = float(stream.duration * stream.time_base)
+    elif container.duration is not None:
+        seconds = container.duration / av.time_base
+    else:
+        return None
+    return max(1, round(seconds * fps)) if seconds > 0 else None
+
+
+def _bgr(frame: VideoFrame, converter: VideoReformatter) -> NDArray[np.uint8]:
+    """HxWx3 uint8 BGR, turned as the camera was held."""
+    plain = converter.reformat(frame, format="bgr24", interpolation="BICUBIC")
+    image = np.asarray(plain.to_ndarray(), np.uint8)
+    turn = _TURNS.get(frame.rotation)
+    return image if turn is None else np.asarray(cv2.rotate(image, turn), np.uint8)
 
 
 def _is_prose(path: Path) -> bool:

@@ -11,7 +11,8 @@ import cv2
 import numpy as np
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.pictures import is_picture, natural_key
+from chromadock.sources.order import natural_key
+from chromadock.sources.pictures import is_picture
 from chromadock.variety.factors import variety
 from chromadock.variety.halves import Half
 from chromadock.variety.light import to_linear

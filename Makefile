@@ -47,8 +47,9 @@ lint: setup ## Run the checks of the source code only
 format: setup ## Format the Python and C sources
 	@$(VENV)/python tools/format.py
 
-generate: setup-demo ## Write tables and golden vectors from shared/method.toml
+generate: setup-demo ## Write tables and golden vectors from shared/method.toml, and the page of the vehicle's keys
 	@$(VENV)/python shared/generate.py
+	@$(VENV)/python tools/configuration.py
 
 contrast: setup-demo ## Choose the mapping contrast anew from simulated waters, then the same
 	@$(VENV)/python shared/contrast.py

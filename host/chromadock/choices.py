@@ -18,5 +18,11 @@ DEFAULT_MAPPING = method.DEFAULT_MAPPING_NAME
 FALLBACK_HUE_DEG = method.FALLBACK_HUE * 360.0 / method.HUE_RANGE
 """Hue of the markers in grey water and at night."""
 
+HUE_MOST_DEG = (method.HUE_RANGE - 1) * 360.0 / method.HUE_RANGE
+"""The largest hue that there is."""
+
+LONGEST_DELAY_S = 10.0
+"""Of a picture from capture to arrival: one that is older does not help to steer."""
+
 DEFAULT_FPS = 30.0
 """Frames a second of pictures, and of cameras and videos that do not tell."""

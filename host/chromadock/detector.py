@@ -16,6 +16,7 @@ from chromadock.choices import (
     DEFAULT_MAPPING,
     DEFAULT_METHOD,
     FALLBACK_HUE_DEG,
+    HUE_MOST_DEG,
     MAPPINGS,
     METHODS,
 )
@@ -231,9 +232,8 @@ def _fallback_hue(hue_deg: float) -> int:
     try:
         return nearest_hue(hue_deg)
     except ValueError:
-        most = degrees(contract.HUE_RANGE - 1)
         raise ChromadockError(
-            f"the fallback hue is {hue_deg:g}: give degrees, 0 .. {most:.2f}, "
+            f"the fallback hue is {hue_deg:g}: give degrees, 0 .. {HUE_MOST_DEG:.2f}, "
             "the same as the dock's FALLBACK_HUE"
         ) from None
 

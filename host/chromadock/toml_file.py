@@ -38,6 +38,24 @@ def read_toml(path: str | Path, mend: str = "give a TOML file") -> dict[str, Any
         ) from None
 
 
+def change(text: str, example: str) -> tuple[str, Any]:
+    """The dotted key and the value of a command line's ``--set key=value``, written as in TOML;
+    words need no quotes.  ``example`` stands in the message.
+
+    Raises
+    ------
+    ChromadockError
+        Where there is no key.
+    """
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise ChromadockError(f"--set {text}: write key=value, e.g. {example}")
+    try:
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value.strip()
+
+
 def one_line_error(path: str | Path, error: ValidationError) -> ChromadockError:
     """The first fault of a file: its name, the key, what stands there, what may stand there."""
     return ChromadockError(f"{path}: {explain(error)}")

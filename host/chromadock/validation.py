@@ -3,15 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
-from pydantic import ValidationError, ValidatorFunctionWrapHandler, WrapValidator
-from pydantic_core import PydanticCustomError
+from pydantic import GetCoreSchemaHandler, ValidationError, ValidatorFunctionWrapHandler
+from pydantic_core import PydanticCustomError, core_schema
 
 from chromadock.text import one_line
 
 
-def between(low: float, high: float, unit: str = "") -> WrapValidator:
+@dataclass(frozen=True)
+class Wanted:
+    """Annotates a key with what may stand there, in words, and with what checks it."""
+
+    words: str
+    check: Callable[[Any, ValidatorFunctionWrapHandler], Any]
+
+    def __get_pydantic_core_schema__(
+        self, source: type[Any], handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """How pydantic comes to the check."""
+        return core_schema.no_info_wrap_validator_function(self.check, handler(source))
+
+
+def between(low: float, high: float, unit: str = "") -> Wanted:
     """Annotates a number: whatever is wrong with it, the message gives the whole range."""
     wanted = f"{low:g} to {high:g} {unit}".rstrip()
 
@@ -25,10 +41,10 @@ def between(low: float, high: float, unit: str = "") -> WrapValidator:
             raise _refusal(wanted)
         return number
 
-    return WrapValidator(check)
+    return Wanted(wanted, check)
 
 
-def allowed(wanted: str) -> WrapValidator:
+def allowed(wanted: str) -> Wanted:
     """Annotates a key: whatever is wrong with it, the message says ``it must be <wanted>``."""
 
     def check(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
@@ -37,7 +53,7 @@ def allowed(wanted: str) -> WrapValidator:
         except ValidationError:
             raise _refusal(wanted) from None
 
-    return WrapValidator(check)
+    return Wanted(wanted, check)
 
 
 def explain(error: ValidationError) -> str:

@@ -15,6 +15,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from chromadock.cli.config import config
 from chromadock.cli.demo import demo
 from chromadock.cli.detect import detect
 from chromadock.cli.dock import dock
@@ -25,6 +26,7 @@ from chromadock.cli.exit_status import (
     EXIT_INTERRUPTED,
     EXIT_TERMINATED,
 )
+from chromadock.cli.run import run
 from chromadock.cli.simulate import simulate
 from chromadock.errors import ChromadockError
 from chromadock.quiet import quiet_libraries
@@ -43,7 +45,9 @@ app = typer.Typer(
 app.command("detect")(detect)
 app.command("demo")(demo)
 app.command("evaluate")(evaluate)
+app.command("run")(run)
 app.command("simulate")(simulate)
+app.add_typer(config, name="config")
 app.add_typer(dock, name="dock")
 
 

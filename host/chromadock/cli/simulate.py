@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -12,11 +12,6 @@ from chromadock.choices import DEFAULT_MAPPING, MAPPINGS
 from chromadock.errors import ChromadockError
 from chromadock.processors import processors
 from chromadock.text import plural
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 _SECONDS = 10.0
 _MOST_FRAMES = 1_000_000
@@ -79,6 +74,7 @@ def simulate(
         from chromadock.sim.scene import load_scene
         from chromadock.sim.simulation import Simulation
         from chromadock.sim.workers import rendered
+        from chromadock.toml_file import change
     except ModuleNotFoundError as error:
         raise ChromadockError(
             f"the simulator needs the package {error.name}: "
@@ -86,7 +82,7 @@ def simulate(
         ) from None
     count = _count(frames, seconds, fps)
     processes = _processes(jobs)
-    changes = dict(_change(text) for text in set_ or [])
+    changes = dict(change(text, "vehicle.distance_m=5") for text in set_ or [])
     if seed is not None:
         changes["seed"] = seed
     photographs = None if background is None else Photographs(background)
@@ -128,14 +124,3 @@ def _processes(jobs: int | None) -> int:
     if not 1 <= jobs <= _MOST_JOBS:
         raise ChromadockError(f"--jobs is {jobs}: give 1 to {_MOST_JOBS} processes")
     return jobs
-
-
-def _change(text: str) -> tuple[str, Any]:
-    """A key and its value, written as in TOML; words need no quotes."""
-    key, equals, value = text.partition("=")
-    if not equals or not key.strip():
-        raise ChromadockError(f"--set {text}: write key=value, e.g. vehicle.distance_m=5")
-    try:
-        return key.strip(), tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
-        return key.strip(), value.strip()

@@ -20,10 +20,22 @@ def open_output(text: str) -> ResultOutput:
     ChromadockError
         One line, where there is no such kind or its place is none.
     """
+    kind, place = check_output(text)
+    return _OPENERS[kind](place)
+
+
+def check_output(text: str) -> tuple[str, str]:
+    """Kind and place of what ``text`` names; nothing is opened.
+
+    Raises
+    ------
+    ChromadockError
+        One line, where there is no such kind.
+    """
     kind, _, place = text.partition(":")
     if kind not in _OPENERS or not place:
         raise ChromadockError(f"--out {text}: no such output: give one of {KINDS}")
-    return _OPENERS[kind](place)
+    return kind, place
 
 
 def _lines_file(place: str) -> ResultOutput:

@@ -9,7 +9,7 @@ import stat
 from functools import partial
 from pathlib import Path
 
-from chromadock.choices import DEFAULT_FPS
+from chromadock.choices import DEFAULT_FPS, LONGEST_DELAY_S
 from chromadock.errors import ChromadockError
 from chromadock.sources.address import without_secrets
 from chromadock.sources.base import OnFault, Source, ignore
@@ -19,9 +19,6 @@ from chromadock.sources.order import natural_key
 from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture
 from chromadock.sources.urls import open_url
 from chromadock.sources.video import open_video
-
-LONGEST_DELAY_S = 10.0
-"""No picture that is older helps to steer."""
 
 _KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
 

@@ -1,0 +1,53 @@
+"""``chromadock config``: the vehicle's file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+config = typer.Typer(help="Write, check and show a vehicle's file.", no_args_is_help=True)
+
+_File = Annotated[Path, typer.Argument(metavar="VEHICLE.toml", show_default=False)]
+
+
+@config.command("init")
+def init(path: _File) -> None:
+    """Write a file with every key at its default, and what it means."""
+    from chromadock.errors import ChromadockError
+    from chromadock.output.base import cannot_write
+    from chromadock.vehicle.manual import shipped_file
+
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(shipped_file())
+    except FileExistsError:
+        raise ChromadockError(f"{path}: is there already: give another name") from None
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    print(f"wrote {path}: set camera.source and camera.calibration first")
+
+
+@config.command("check")
+def check(path: _File) -> None:
+    """Say what is wrong in the file, or in those that it names."""
+    from chromadock.output.addresses import check_output
+    from chromadock.vehicle.building import camera_of, detector_of, dock_of
+    from chromadock.vehicle.reading import read_vehicle
+
+    settings = read_vehicle(path)
+    detector_of(settings, camera_of(settings), dock_of(settings))
+    for text in settings.outputs.results:
+        check_output(text)
+    print(f"{path}: all keys are well")
+
+
+@config.command("show")
+def show(path: _File) -> None:
+    """Print what holds: every key, those that are not at their default marked with *."""
+    from chromadock.vehicle.manual import effective
+    from chromadock.vehicle.reading import read_vehicle
+
+    for key, value, changed in effective(read_vehicle(path)):
+        print(f"{'*' if changed else ' '} {key} = {value}")

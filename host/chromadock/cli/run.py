@@ -1,0 +1,54 @@
+"""``chromadock run``: what a vehicle does, by its file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def run(
+    vehicle: Annotated[
+        Path,
+        typer.Argument(
+            metavar="VEHICLE.toml",
+            help="The vehicle's settings: `chromadock config init` writes them.",
+            show_default=False,
+        ),
+    ],
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Goes before a key of the file, e.g. camera.source=1; may be repeated.",
+        ),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
+) -> None:
+    """Find the dock in what the camera of VEHICLE.toml sees, and pass on where it is.
+
+    docs/configuration.md has every key of the file.
+    """
+    from chromadock.cli.detect_frames import detect_frames
+    from chromadock.cli.report import Report
+    from chromadock.sources import open_source
+    from chromadock.toml_file import change
+    from chromadock.vehicle.building import camera_of, detector_of, dock_of
+    from chromadock.vehicle.reading import read_vehicle
+
+    changes = dict(change(text, "camera.source=1") for text in set_ or [])
+    settings = read_vehicle(vehicle, changes)
+    camera, dock = camera_of(settings), dock_of(settings)
+    detector = detector_of(settings, camera, dock)
+    report = Report(json=json, calibrated=camera is not None)
+    frames = open_source(
+        settings.camera.source,
+        on_fault=report.fault,
+        tell=report.notice,
+        delay_s=settings.camera.delay_s,
+    )
+    overlay = Path(settings.outputs.overlay) if settings.outputs.overlay else None
+    outputs = settings.outputs.results
+    raise typer.Exit(detect_frames(frames, detector, camera, dock, overlay, outputs, report))

@@ -1,0 +1,112 @@
+"""Every setting of a vehicle: its type, range, default and meaning.
+
+The one place for them: the file that ``chromadock config init`` writes, ``docs/configuration.md``
+and what is refused all follow from it.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from chromadock.choices import (
+    DEFAULT_MAPPING,
+    DEFAULT_METHOD,
+    FALLBACK_HUE_DEG,
+    HUE_MOST_DEG,
+    LONGEST_DELAY_S,
+    MAPPINGS,
+    METHODS,
+)
+from chromadock.validation import allowed, between
+
+TEXT_IN_QUOTES = "a text in quotes"
+Text = Annotated[str, allowed(TEXT_IN_QUOTES)]
+Angle = Annotated[float, between(-180, 180, "degrees")]
+Mapping = Annotated[Literal[MAPPINGS], allowed(f"one of {', '.join(MAPPINGS)}")]  # type: ignore[valid-type]
+Method = Annotated[Literal[METHODS], allowed(f"one of {', '.join(METHODS)}")]  # type: ignore[valid-type]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class CameraKeys(_Table):
+    """The vehicle's camera."""
+
+    source: Text = Field(
+        "0",
+        description="Where its frames come from: a camera's index or device, a stream's URL, a "
+        "GStreamer pipeline, a video, a picture or a folder.",
+    )
+    calibration: Text = Field(
+        "",
+        description="File of its calibration, made in water. Empty: a usual lens is assumed, and "
+        "distances are rough.",
+    )
+    delay_s: Annotated[float, between(0, LONGEST_DELAY_S, "s")] = Field(
+        0.0,
+        description="From capture to arrival of a picture at best, which no stamp tells: an "
+        "encoder's time, say.",
+    )
+
+
+class MountingKeys(_Table):
+    """How the camera sits in the vehicle: turns from a camera that looks ahead, upright, in the
+    order yaw, pitch, roll. Leave the whole table out if nobody has measured it."""
+
+    yaw_deg: Angle = Field(0.0, description="To the right, seen from above.")
+    pitch_deg: Angle = Field(0.0, description="Upwards; a camera that looks down has -90.")
+    roll_deg: Angle = Field(0.0, description="Clockwise, seen from behind the camera.")
+
+
+class DockKeys(_Table):
+    """The dock that is looked for."""
+
+    file: Text = Field("", description="File of its markers. Empty: the original dock.")
+    mapping: Mapping = Field(
+        DEFAULT_MAPPING,
+        description="From the water's colour to the markers', as the dock is set.",
+    )
+    colour: Text = Field(
+        "",
+        description='Of lamps that have a colour of their own: "#RRGGBB", "white" or "any". Empty: '
+        "the dock file's, or by the water.",
+    )
+    fallback_hue_deg: Annotated[float, between(0, HUE_MOST_DEG, "degrees")] = Field(
+        round(FALLBACK_HUE_DEG, 2),
+        description="Of the markers in grey water and at night, the dock's FALLBACK_HUE.",
+    )
+
+
+class DetectorKeys(_Table):
+    """How it is looked for."""
+
+    method: Method = Field(DEFAULT_METHOD, description="How markers are found.")
+    independent: Annotated[bool, allowed("true or false")] = Field(
+        False, description="Treat every frame alone: no track."
+    )
+
+
+class OutputKeys(_Table):
+    """Where the results go, beside the screen."""
+
+    results: Annotated[list[str], allowed("a list of texts in quotes")] = Field(
+        [],
+        description="Any number of KIND:PLACE: json:FILE appends to a log, udp:HOST:PORT sends "
+        "datagrams.",
+    )
+    overlay: Text = Field(
+        "", description="A video or folder into which is drawn what was seen. Empty: none."
+    )
+
+
+class VehicleFile(_Table):
+    """The whole file."""
+
+    camera: CameraKeys = CameraKeys()
+    mounting: MountingKeys | None = None
+    dock: DockKeys = DockKeys()
+    detector: DetectorKeys = DetectorKeys()
+    outputs: OutputKeys = OutputKeys()

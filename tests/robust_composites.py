@@ -116,9 +116,15 @@ def pose_in_view(
             return R, t, pixels
 
 
-def add_lamp(light: np.ndarray, water: Water, pixel: np.ndarray, range_m: float) -> None:
+def add_lamp(
+    light: np.ndarray,
+    water: Water,
+    pixel: np.ndarray,
+    range_m: float,
+    camera: CameraModel = CAMERA,
+) -> None:
     """Add one LED to a linear RGB image, in place: what comes straight and its halo."""
-    focal = float(CAMERA.matrix[0, 0])
+    focal = float(camera.matrix[0, 0])
     face = focal * LED_RADIUS_M / range_m
     sigma, halo = np.hypot(LENS_SIGMA_PX, face / 2), focal * HALO_ANGLE_RAD
     straight = np.exp(-water.attenuation * range_m)

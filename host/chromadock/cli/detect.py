@@ -29,7 +29,7 @@ def detect(
     ],
     camera: Annotated[
         Path | None,
-        typer.Option(help="camera_info YAML of your calibration.", show_default="a usual lens"),
+        typer.Option(help="Camera file of your calibration: ROS, OpenCV or Kalibr.", show_default="a usual lens"),
     ] = None,
     dock: Annotated[
         Path | None,

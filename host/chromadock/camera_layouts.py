@@ -93,7 +93,7 @@ def layout_of(content: Mapping[str, Any]) -> type[Layout]:
     """Which layout the keys, in lower case, are of; ``camera_info`` unless they tell another."""
     if "intrinsics" in content:
         return KalibrCamera
-    if "k" in content and "camera_matrix" not in content:
+    if "k" in content and "width" in content:
         return CameraInfoMessage
     return CameraInfoFile
 

@@ -150,7 +150,7 @@ class PinholeLens:
         return self._inverted((pixels - centre) / beyond + centre) * beyond
 
     def _beyond(self, pixels: Real) -> Real:
-        """(N,) distance of (N, 2) pixels from the principal point over how far the formula comes."""
+        """(N,) distance of (N, 2) pixels from the principal point, over that of the fold."""
         if self.fold is None:
             return np.zeros(len(pixels))
         off = (pixels - self.matrix[:2, 2]) / self.matrix[[0, 1], [0, 1]]

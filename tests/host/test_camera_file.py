@@ -148,7 +148,7 @@ def test_a_lens_of_kalibrs_is_taken_for_what_it_is(written: Write, old: str, new
         (KALIBR.replace("intrinsics: [500,", "intrinsics: [ho,"), "intrinsics, number 1 is 'ho'"),
         (MESSAGE.replace("k: [500,", "k: ["), "k has 8 numbers: it must have 9"),
         (MESSAGE.replace("d: [-0.03,", "d: ["), "3 numbers, but equidistant has 4"),
-        (MESSAGE.replace("width: 640\n", ""), "width is missing"),
+        (MESSAGE.replace("height: 480\n", ""), "height is missing"),
         ("<?xml version='1.0'?>\n<opencv_storage>\n", "OpenCV's XML is not read: have it written"),
         ("<?xml version='1.0'?>\n<calibration>\n", "an XML file is not read"),
         ("# oST version 5.0 parameters\n\n\n[image]\n\nwidth\n640\n", "an .ini file is not read"),

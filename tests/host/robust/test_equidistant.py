@@ -5,8 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 import pytest
-from lit import to_linear
-from robust_composites import Water, add_lamp, photographed
+from robust_composites import in_plain_water
 
 from chromadock import CameraModel, Detector, DockGeometry
 from chromadock.geometry.pose import Sighting, epnp, estimates, refined
@@ -76,18 +75,11 @@ def test_pixels_that_no_ray_comes_to_give_no_pose() -> None:
 
 
 def picture(camera: CameraModel, R: np.ndarray, t: np.ndarray, seed: int = 0) -> np.ndarray:
-    """Lamps where the lens has them, over blue-green water with a camera's noise."""
-    rng = np.random.default_rng(seed)
-    shade = np.linspace(1.2, 0.8, camera.height)[:, None, None] * np.array([40.0, 140.0, 190.0])
-    noisy = shade + rng.normal(0, 2, (camera.height, camera.width, 3))
-    rgb = np.clip(noisy, 0, 255).astype(np.uint8)
-    light, water = to_linear(rgb), Water.of(rgb, rng)
-    water = Water(np.full(3, 0.4), water.veil, water.lamp)
-    for point in DOCK.points @ R.T + t:
-        pixel = camera.project(point)[0]
-        assert (pixel > 10).all() and (pixel < np.array([630, 470])).all()
-        add_lamp(light, water, pixel, float(np.linalg.norm(point)), camera)
-    return photographed(light, rng)
+    """The dock in plain water, wholly within the frame."""
+    points = DOCK.points @ R.T + t
+    pixels = camera.project(points)
+    assert (pixels > 10).all() and (pixels < np.array([630, 470])).all()
+    return in_plain_water(points, camera, seed)
 
 
 @pytest.mark.parametrize(

@@ -116,9 +116,15 @@ def pose_in_view(
             return R, t, pixels
 
 
-def add_lamp(light: np.ndarray, water: Water, pixel: np.ndarray, range_m: float) -> None:
+def add_lamp(
+    light: np.ndarray,
+    water: Water,
+    pixel: np.ndarray,
+    range_m: float,
+    camera: CameraModel = CAMERA,
+) -> None:
     """Add one LED to a linear RGB image, in place: what comes straight and its halo."""
-    focal = float(CAMERA.matrix[0, 0])
+    focal = float(camera.matrix[0, 0])
     face = focal * LED_RADIUS_M / range_m
     sigma, halo = np.hypot(LENS_SIGMA_PX, face / 2), focal * HALO_ANGLE_RAD
     straight = np.exp(-water.attenuation * range_m)
@@ -131,6 +137,20 @@ def add_lamp(light: np.ndarray, water: Water, pixel: np.ndarray, range_m: float)
     for channel in range(3):
         direct, around = energy[channel] * straight[channel], energy[channel] * scattered[channel]
         light[..., channel] += np.float32(direct) * core + np.float32(around) * glow
+
+
+def in_plain_water(points: np.ndarray, camera: CameraModel, seed: int = 0) -> np.ndarray:
+    """Lamps at points in the camera frame (N, 3), where the lens has them, over blue-green water
+    with a camera's noise, (H, W, 3) uint8 BGR."""
+    rng = np.random.default_rng(seed)
+    shade = np.linspace(1.2, 0.8, camera.height)[:, None, None] * np.array([40.0, 140.0, 190.0])
+    noisy = shade + rng.normal(0, 2, (camera.height, camera.width, 3))
+    rgb = np.clip(noisy, 0, 255).astype(np.uint8)
+    light, seen = to_linear(rgb), Water.of(rgb, rng)
+    water = Water(np.full(3, 0.4), seen.veil, seen.lamp)
+    for pixel, point in zip(camera.project(points), points, strict=True):
+        add_lamp(light, water, pixel, float(np.linalg.norm(point)), camera)
+    return photographed(light, rng)
 
 
 def add_clutter(

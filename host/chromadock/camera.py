@@ -7,28 +7,23 @@ Camera frame: OpenCV's (x right, y down, z forward), metres.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from chromadock.camera_check import implausible, impossible
 from chromadock.errors import ChromadockError
-
-DISTORTION_COUNTS = (0, 4, 5, 8, 12, 14)
-"""Numbers of coefficients that OpenCV's lens model takes; none means no distortion."""
+from chromadock.lens import Lens, lens_of
 
 NOMINAL_FOCAL_PER_WIDTH = 0.8
 """A plain webcam lens sees about 64 degrees across: f is 0.8 widths."""
 
-# OpenCV's own default stops after five rounds, which leaves almost a pixel of error at
-# the corners of a wide lens.
-_CONVERGED = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 100, 1e-10)
-
 
 @dataclass(frozen=True, eq=False)
 class CameraModel:
-    """A pinhole camera with OpenCV's lens distortion.
+    """A camera: its pixels, and one of the lenses in ``lens.COUNTS``.
 
     Parameters
     ----------
@@ -37,14 +32,20 @@ class CameraModel:
     matrix
         3x3 float64 ``[[fx, 0, cx], [0, fy, cy], [0, 0, 1]]``, pixels.
     distortion
-        (n,) float64 with n one of 0, 4, 5, 8, 12, 14: k1 k2 p1 p2 [k3 [k4 k5 k6 [...]]].
+        (n,) float64.  ``plumb_bob`` has 0, 4 or 5, ``rational_polynomial`` 0, 8, 12 or 14:
+        k1 k2 p1 p2 [k3 [k4 k5 k6 [...]]], as OpenCV; ``equidistant`` 0 or 4: k1 k2 k3 k4, as
+        ``cv2.fisheye``.
     name
         What messages call this camera: its file.
+    lens
+        ``plumb_bob``, ``rational_polynomial`` or ``equidistant``; unless given one of the first
+        two, by the number of coefficients.
 
     Raises
     ------
     ChromadockError
-        Where the numbers cannot be a camera.
+        Where the numbers cannot be a camera: a focal length that must be in millimetres, say, or a
+        distortion that folds the picture.
     """
 
     width: int
@@ -52,6 +53,7 @@ class CameraModel:
     matrix: NDArray[np.float64]
     distortion: NDArray[np.float64] = field(default_factory=lambda: np.zeros(5))
     name: str = "camera"
+    lens: str = ""
 
     def __post_init__(self) -> None:
         matrix = np.array(self.matrix, dtype=np.float64)
@@ -60,13 +62,17 @@ class CameraModel:
         distortion.setflags(write=False)
         object.__setattr__(self, "matrix", matrix)
         object.__setattr__(self, "distortion", distortion)
-        fault = _fault(self.width, self.height, matrix, distortion)
+        fault = impossible(self.width, self.height, matrix, distortion, self.lens)
+        if not self.lens:
+            by_count = "plumb_bob" if distortion.size <= 5 else "rational_polynomial"
+            object.__setattr__(self, "lens", by_count)
+        fault = fault or implausible(self.width, self.height, matrix, self.lens, self.optics)
         if fault:
             raise ChromadockError(f"{self.name}: {fault}")
 
     @classmethod
     def from_yaml(cls, path: str | Path) -> CameraModel:
-        """The camera in a ROS ``camera_info`` YAML, as calibration tools write it.
+        """The camera in a file that a calibration tool wrote: see ``camera_file``.
 
         Raises
         ------
@@ -75,7 +81,9 @@ class CameraModel:
         """
         from chromadock.camera_file import read_camera_file
 
-        return cls(*read_camera_file(Path(path)), name=str(path))
+        read = read_camera_file(Path(path))
+        name = str(path) + read.window
+        return cls(read.width, read.height, read.matrix, read.distortion, name, read.lens)
 
     @classmethod
     def nominal(cls, width: int, height: int) -> CameraModel:
@@ -89,28 +97,48 @@ class CameraModel:
         matrix = np.array([[focal, 0, centre_x], [0, focal, centre_y], [0, 0, 1]])
         return cls(width, height, matrix, name="nominal camera")
 
+    @cached_property
+    def optics(self) -> Lens:
+        """What its lens does to rays."""
+        return lens_of(self.lens, self.matrix, self.distortion)
+
+    @property
+    def key(self) -> tuple[int, int, bytes, bytes, str]:
+        """The same for cameras of the same geometry, whatever their names."""
+        numbers = self.matrix.tobytes(), self.distortion.tobytes()
+        return self.width, self.height, *numbers, self.lens
+
+    @classmethod
+    def of_key(cls, key: tuple[int, int, bytes, bytes, str]) -> CameraModel:
+        """A camera of that geometry."""
+        width, height, matrix, distortion, lens = key
+        numbers = np.frombuffer(matrix).reshape(3, 3), np.frombuffer(distortion)
+        return cls(width, height, *numbers, lens=lens)
+
+    def rays(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Nx2 pixels to Nx3 unit vectors, camera frame; NaN where the lens sends no ray."""
+        return self.optics.rays(np.asarray(points, dtype=np.float64).reshape(-1, 2))
+
     def undistort(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Nx2 pixels to Nx2 normalised coordinates: the ray is ``(x, y, 1)``, camera frame."""
-        pixels = np.asarray(points, dtype=np.float64).reshape(-1, 1, 2)
-        if not len(pixels):
-            return np.empty((0, 2))
-        if hasattr(cv2, "undistortPointsIter"):  # OpenCV 4; in 5 it became an argument
-            rays = cv2.undistortPointsIter(
-                pixels, self.matrix, self.distortion, None, None, _CONVERGED
-            )
-        else:
-            rays = cv2.undistortPoints(pixels, self.matrix, self.distortion, criteria=_CONVERGED)
-        return np.asarray(rays, dtype=np.float64).reshape(-1, 2)
+        """Nx2 pixels to Nx2 normalised coordinates: the ray is ``(x, y, 1)``, camera frame.
+
+        NaN for rays at 90 degrees and more from the axis, which have none: see ``rays``.
+        """
+        pixels = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        if self.lens != "equidistant":
+            return self.optics.ideal(pixels)
+        rays = self.optics.rays(pixels)
+        ahead = np.where(rays[:, 2:] > 0, rays[:, 2:], np.nan)
+        return np.asarray(rays[:, :2] / ahead)
 
     def project(self, points_camera: ArrayLike) -> NDArray[np.float64]:
-        """Nx3 metres in the camera frame to Nx2 pixels; NaN for points not in front."""
+        """Nx3 metres in the camera frame to Nx2 pixels; NaN for points that the lens cannot see:
+        of a pinhole those not in front."""
         points = np.asarray(points_camera, dtype=np.float64).reshape(-1, 3)
         pixels = np.full((len(points), 2), np.nan)
-        in_front = points[:, 2] > 0
-        if in_front.any():
-            zero = np.zeros(3)
-            seen, _ = cv2.projectPoints(points[in_front], zero, zero, self.matrix, self.distortion)
-            pixels[in_front] = seen.reshape(-1, 2)
+        seen = self.optics.sees(points)
+        if seen.any():
+            pixels[seen] = self.optics.project(points[seen])[0]
         return pixels
 
     def check_size(self, shape: tuple[int, ...]) -> None:
@@ -129,40 +157,3 @@ class CameraModel:
                 f"{self.name}: calibrated for {self.width}x{self.height} pixels, but the frames "
                 f"are {width}x{height}: calibrate the camera in the mode you use it in"
             )
-
-
-def _fault(
-    width: int, height: int, matrix: NDArray[np.float64], distortion: NDArray[np.float64]
-) -> str | None:
-    """What makes these numbers impossible as a camera, or None."""
-    if width <= 0 or height <= 0:
-        return f"image_width x image_height is {width}x{height}: both must be positive"
-    if matrix.shape != (3, 3):
-        return f"camera_matrix is {'x'.join(map(str, matrix.shape))}: it must be 3x3"
-    if not np.isfinite(matrix).all():
-        return "camera_matrix has a number that is not finite: calibrate again"
-    if distortion.size not in DISTORTION_COUNTS:
-        return (
-            f"distortion_coefficients has {distortion.size} numbers: "
-            "it must have 4, 5, 8, 12 or 14, or none"
-        )
-    if not np.isfinite(distortion).all():
-        return "distortion_coefficients has a number that is not finite: calibrate again"
-    return _matrix_fault(matrix)
-
-
-def _matrix_fault(matrix: NDArray[np.float64]) -> str | None:
-    """What is wrong with a finite 3x3 camera matrix, or None."""
-    fx, fy = matrix[0, 0], matrix[1, 1]
-    mend = "it must read fx 0 cx, 0 fy cy, 0 0 1 with fx and fy positive, in pixels"
-    scale = np.abs(matrix).max()
-    if scale == 0 or abs(np.linalg.det(matrix / scale)) < 1e-12:
-        return f"camera_matrix is singular: {mend}"
-    if fx <= 0 or fy <= 0:
-        return f"camera_matrix has fx = {fx:g}, fy = {fy:g}: {mend}"
-    if not np.allclose(matrix[2], (0, 0, 1)):
-        last = " ".join(f"{v:g}" for v in matrix[2])
-        return f"camera_matrix ends with the row {last} (transposed?): {mend}"
-    if abs(matrix[1, 0]) > 1e-6 * fy or abs(matrix[0, 1]) > 1e-6 * fx:
-        return f"camera_matrix has skew, which is not supported: {mend}"
-    return None

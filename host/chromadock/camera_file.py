@@ -1,46 +1,29 @@
-"""Reads the ``camera_info`` YAML of ROS, and OpenCV's own dialect of it."""
+"""Reads the camera files of calibration tools: ROS, OpenCV, Kalibr, or a CameraInfo as printed."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-import numpy as np
 import yaml
-from numpy.typing import NDArray
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import ValidationError
 
+from chromadock.camera_layouts import (
+    KEEP,
+    foreign_keys,
+    foreign_text,
+    kalibr_cameras,
+    layout_of,
+)
+from chromadock.camera_window import Calibration, Roi, windowed
 from chromadock.errors import ChromadockError
+from chromadock.lens_words import lens_told
 from chromadock.text import one_line
+from chromadock.text_file import read_text
 from chromadock.validation import place, shown, wording
 
-_Number = Annotated[float, Field(allow_inf_nan=False)]
-_Pixels = Annotated[int, Field(gt=0)]
-
-MODELS: dict[str, tuple[int, ...]] = {
-    "plumb_bob": (0, 4, 5),
-    "rational_polynomial": (0, 8, 12, 14),
-}
-"""The lens models of ROS that OpenCV's formula covers, and their numbers of coefficients."""
-
-
-class _Matrix(BaseModel):
-    data: Annotated[list[_Number], Field(min_length=9, max_length=9)]
-
-
-class _Coefficients(BaseModel):
-    data: list[_Number]
-
-
-class _CameraInfo(BaseModel):
-    """Only the keys that are used; calibration tools write many more."""
-
-    image_width: _Pixels
-    image_height: _Pixels
-    camera_matrix: _Matrix
-    distortion_coefficients: _Coefficients
-    distortion_model: str | None = None
+_GZIP = b"\x1f\x8b"
 
 
 class _Loader(yaml.SafeLoader):
@@ -54,51 +37,86 @@ def _opencv_matrix(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
 _Loader.add_constructor("tag:yaml.org,2002:opencv-matrix", _opencv_matrix)
 
 
-def read_camera_file(
-    path: Path,
-) -> tuple[int, int, NDArray[np.float64], NDArray[np.float64]]:
-    """Width, height (pixels), 3x3 camera matrix and (n,) distortion of a camera YAML.
+def read_camera_file(path: Path) -> Calibration:
+    """What a camera file has, of the pictures that the camera gives: region of interest and
+    binning are applied.
 
     Raises
     ------
     ChromadockError
         One line with the file, the key, what is wrong and the mend.
     """
+    content = _camera_of(path, _load(path))
+    fault = foreign_keys(content)
+    lens, unknown = lens_told(content)
+    if fault or unknown:
+        raise ChromadockError(f"{path}: {fault or unknown}")
     try:
-        info = _CameraInfo.model_validate(_load(path))
+        read = layout_of(content).model_validate(content)
     except ValidationError as error:
         raise ChromadockError(f"{path}: {_explain(error)}") from None
-    _check_model(path, info)
-    matrix = np.array(info.camera_matrix.data, dtype=np.float64).reshape(3, 3)
-    distortion = np.array(info.distortion_coefficients.data, dtype=np.float64)
-    return info.image_width, info.image_height, matrix, distortion
+    full = read.full(lens)
+    calibration = _aside(full) or windowed(full, read.roi or Roi(), read.binning)
+    if isinstance(calibration, str):
+        raise ChromadockError(f"{path}: {calibration}")
+    return calibration
+
+
+def _aside(full: Calibration) -> str | None:
+    """Whether the lens looks past the sensor, in words; a region of it may well be aside."""
+    x, y = full.matrix[:2, 2].tolist()
+    if -0.5 <= x <= full.width - 0.5 and -0.5 <= y <= full.height - 0.5:
+        return None
+    return (
+        f"camera_matrix has its principal point at ({x:g}, {y:g}), outside the picture of "
+        f"{full.width}x{full.height} pixels: correct either, both in pixels of the same camera mode"
+    )
 
 
 def _load(path: Path) -> dict[str, Any]:
+    """The file's keys, in lower case, and values."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except OSError as error:
         raise ChromadockError(
-            f"{path}: cannot read the camera file ({error.strerror}): "
-            "give the camera_info YAML of your calibration"
+            f"{path}: cannot read the camera file ({error.strerror}): {KEEP}"
         ) from None
     except UnicodeDecodeError:
-        raise ChromadockError(
-            f"{path}: not a text file: give the camera_info YAML of your calibration"
-        ) from None
+        packed = path.read_bytes()[:2] == _GZIP
+        mend = "unpack it and give the .yaml in it" if packed else KEEP
+        raise ChromadockError(f"{path}: not a text file: {mend}") from None
+    foreign = foreign_text(text)
+    if foreign:
+        raise ChromadockError(f"{path}: {foreign}")
     # OpenCV writes "%YAML:1.0", which no other YAML reader accepts.
     text = re.sub(r"\A%YAML:1\.0[^\n]*\n", "", text)
     try:
-        content = yaml.load(text, Loader=_Loader)
+        # Messages that are printed one after the other are so many documents.
+        documents = [d for d in yaml.load_all(text, Loader=_Loader) if d is not None]
     except yaml.YAMLError as error:
         raise ChromadockError(
             f"{path}: not valid YAML ({_problem(error)}): export the calibration again"
         ) from None
-    if not isinstance(content, dict):
+    if not documents or not isinstance(documents[0], dict):
+        raise ChromadockError(f"{path}: no keys in it: {KEEP}")
+    return _lower(documents[0])
+
+
+def _lower(content: dict[Any, Any]) -> dict[str, Any]:
+    """ROS 1 prints K where ROS 2 prints k, and OpenCV has written Camera_Matrix."""
+    return {str(key).lower(): value for key, value in content.items()}
+
+
+def _camera_of(path: Path, content: dict[str, Any]) -> dict[str, Any]:
+    """The one camera of Kalibr's camchain; the same content for any other layout."""
+    cameras = kalibr_cameras(content)
+    if not cameras:
+        return content
+    if len(cameras) > 1:
         raise ChromadockError(
-            f"{path}: no keys in it: give the camera_info YAML of your calibration"
+            f"{path}: {' and '.join(cameras)} are in it: write the one that you use alone in a file"
         )
-    return content
+    return _lower(content[cameras[0]])
 
 
 def _problem(error: yaml.YAMLError) -> str:
@@ -113,31 +131,14 @@ def _explain(error: ValidationError) -> str:
     fault: Any = error.errors()[0]
     where, given, kind = place(fault["loc"]), fault["input"], fault["type"]
     if kind == "missing":
-        return f"{where} is missing: give the camera_info YAML of your calibration"
+        return f"{where} is missing: {KEEP}"
     if kind in ("too_short", "too_long"):
-        return f"{where} has {len(given)} numbers: it must have 9 (3 rows of 3)"
+        wanted = fault["ctx"]["min_length" if kind == "too_short" else "max_length"]
+        rows = " (3 rows of 3)" if wanted == 9 else ""
+        return f"{where} has {len(given)} numbers: it must have {wanted}{rows}"
     if kind == "greater_than":
         return f"{where} is {given}: it must be positive, in pixels"
     if kind == "finite_number":
         return f"{where} is {given}: it must be a finite number, so calibrate again"
-    wanted = "rows, cols and data" if kind == "model_type" else wording(fault)
+    wanted = "rows, cols and data" if kind == "model_type" and where != "roi" else wording(fault)
     return f"{where} is {shown(given)}: it must be {wanted}"
-
-
-def _check_model(path: Path, info: _CameraInfo) -> None:
-    """Refuse a lens model that is not OpenCV's formula, and a count that belies the model."""
-    model = info.distortion_model
-    count = len(info.distortion_coefficients.data)
-    if not model:  # OpenCV's own files name none; the count tells the formula
-        return
-    if model not in MODELS:
-        raise ChromadockError(
-            f"{path}: distortion_model {model} is not supported: "
-            f"calibrate with {' or '.join(MODELS)}"
-        )
-    if count not in MODELS[model]:
-        allowed = " or ".join(str(n) for n in MODELS[model] if n)
-        raise ChromadockError(
-            f"{path}: distortion_coefficients has {count} numbers, "
-            f"but {model} has {allowed}: correct the list or the distortion_model"
-        )

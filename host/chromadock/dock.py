@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
-from itertools import combinations
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from chromadock.dock_check import fault_of
 from chromadock.errors import ChromadockError
 from chromadock.geometry.symmetry import Symmetry, symmetries
 from chromadock.marker_colour import WANTED, MarkerColour
@@ -25,12 +25,6 @@ from chromadock.validation import place, shown
 
 DEFAULT_FILE = "default_dock.toml"
 """Packaged; it is also the example to copy."""
-
-MIN_MARKERS = 3
-MIN_SPACING_M = 0.001
-"""Markers closer than their LEDs are wide are a slip of the pen."""
-MAX_EXTENT_M = 100.0
-"""A larger number is surely in millimetres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,15 +43,18 @@ class DockGeometry:
         Of lamps that shine in a colour of their own: ``#RRGGBB``, ``white`` or ``any``; None of
         a dock that chooses it by the water.
     largest_range_m
-        From where the dock can be seen at most; what is found farther away is none.  None for
-        no such limit.
+        From where the dock can be seen at most, to its markers' centroid; what is found farther
+        away is none.  None for no such limit.
+    confirmed
+        That its user is sure of what is a slip in most files: markers more than 10 m apart, or seen
+        edge-on by a vehicle that comes along z.
 
     Raises
     ------
     ChromadockError
         Fewer than three markers, a repeated name, a number that is not finite, markers
-        that coincide or all lie on one line, a position that cannot be in metres, a colour
-        that is none, a largest range that is not more than 0.
+        that coincide or all lie on one line, that cannot be in metres, a colour that is none, a
+        largest range that is not more than 0; unless ``confirmed``, what that is for.
     """
 
     names: tuple[str, ...]
@@ -65,13 +62,14 @@ class DockGeometry:
     source: str = "dock"
     colour: str | None = None
     largest_range_m: float | None = None
+    confirmed: bool = False
 
     def __post_init__(self) -> None:
         points = np.array(self.points, dtype=np.float64)
         points.setflags(write=False)
         object.__setattr__(self, "names", tuple(self.names))
         object.__setattr__(self, "points", points)
-        fault = _fault(self.names, points)
+        fault = fault_of(self.names, points, self.confirmed)
         if fault:
             raise ChromadockError(f"{self.source}: {fault}")
         if self.colour is not None:
@@ -100,18 +98,20 @@ class DockGeometry:
     def default(cls) -> DockGeometry:
         """The original dock: a rectangle of 0.890 m x 0.127 m, named by its corners."""
         with resources.as_file(resources.files("chromadock") / DEFAULT_FILE) as path:
-            return _loaded(path, DEFAULT_FILE)
+            return _loaded(path, DEFAULT_FILE, False)
 
     @classmethod
-    def from_toml(cls, path: str | Path) -> DockGeometry:
+    def from_toml(cls, path: str | Path, confirmed: bool = False) -> DockGeometry:
         """The dock in a TOML file laid out like ``default_dock.toml``.
+
+        ``confirmed``: see there; the same key of the file does as well.
 
         Raises
         ------
         ChromadockError
             One line with the file, what is wrong and the mend.
         """
-        return _loaded(path, str(path))
+        return _loaded(path, str(path), confirmed)
 
 
 class _Marker(BaseModel):
@@ -124,19 +124,20 @@ class _DockFile(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
     colour: str | None = None
     largest_range_m: float | None = None
+    confirmed: bool = False
     marker: list[_Marker] = []
 
 
-def _loaded(path: str | Path, source: str) -> DockGeometry:
+def _loaded(path: str | Path, source: str, confirmed: bool) -> DockGeometry:
     content = read_toml(path, "give a TOML file with one [[marker]] for each marker")
     try:
         file = _DockFile.model_validate(content)
     except ValidationError as error:
         raise ChromadockError(f"{source}: {_explain(error)}") from None
     points = np.array([m.position for m in file.marker], dtype=np.float64).reshape(-1, 3)
-    return DockGeometry(
-        tuple(m.name for m in file.marker), points, source, file.colour, file.largest_range_m
-    )
+    names = tuple(m.name for m in file.marker)
+    sure = confirmed or file.confirmed
+    return DockGeometry(names, points, source, file.colour, file.largest_range_m, sure)
 
 
 def _explain(error: ValidationError) -> str:
@@ -144,9 +145,10 @@ def _explain(error: ValidationError) -> str:
     fault: Any = error.errors()[0]
     where, of_marker = place(fault["loc"][:3]), len(fault["loc"]) > 1
     if fault["type"] == "extra_forbidden":
-        if of_marker and fault["loc"][-1] in ("colour", "largest_range_m"):
+        if of_marker and fault["loc"][-1] in ("colour", "largest_range_m", "confirmed"):
             return f"unknown key {where}: write it once, above the first [[marker]]"
-        known = "name and position" if of_marker else "colour, largest_range_m and [[marker]]"
+        above = "colour, largest_range_m, confirmed and [[marker]]"
+        known = "name and position" if of_marker else above
         return f"unknown key {where}: only {known} may stand there"
     if fault["type"] == "missing":
         return f"{where} is missing: each [[marker]] has a name and a position"
@@ -154,31 +156,10 @@ def _explain(error: ValidationError) -> str:
         return f"colour is {shown(fault['input'])}: give {WANTED}"
     if where == "largest_range_m":
         return f"largest_range_m is {shown(fault['input'])}: give metres, such as 8.0"
+    if where == "confirmed":
+        return f"confirmed is {shown(fault['input'])}: give true or false"
     if "position" in fault["loc"]:
         return f"{where} must be three numbers in metres: position = [x, y, z]"
     if "name" in fault["loc"]:
         return f'{where} is {shown(fault["input"])}: write a text such as name = "top_left"'
     return f"{where} must be one or more [[marker]] with a name and a position"
-
-
-def _fault(names: tuple[str, ...], points: NDArray[np.float64]) -> str | None:
-    """What makes these markers impossible as a dock, or None."""
-    if points.shape != (len(names), 3):
-        return f"{len(names)} names but points of shape {points.shape}: give one x, y, z a name"
-    if len(names) < MIN_MARKERS:
-        return f"{len(names)} markers: a pose needs at least {MIN_MARKERS}, so add [[marker]]s"
-    for name in names:
-        if names.count(name) > 1:
-            return f"the name {name} is used {names.count(name)} times: give each marker its own"
-    for name, point in zip(names, points, strict=True):
-        if not np.isfinite(point).all():
-            return f"marker {name} has a position that is not finite: give metres"
-        if np.abs(point).max() > MAX_EXTENT_M:
-            return f"marker {name} is {np.abs(point).max():g} m from the centre: give metres"
-    for (name_a, a), (name_b, b) in combinations(zip(names, points, strict=True), 2):
-        if np.linalg.norm(a - b) < MIN_SPACING_M:
-            return f"markers {name_a} and {name_b} are at the same place: correct one of them"
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    if spread[1] < 1e-3 * spread[0]:
-        return "all markers lie on one line, which gives no pose: move one of them off it"
-    return None

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from chromadock.errors import ChromadockError
 from chromadock.text import one_line
+from chromadock.text_file import read_text
 from chromadock.validation import explain
 
 if sys.version_info >= (3, 11):
@@ -27,7 +28,7 @@ def read_toml(path: str | Path, mend: str = "give a TOML file") -> dict[str, Any
         One line with the file, what is wrong and the mend.
     """
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        return tomllib.loads(read_text(path))
     except OSError as error:
         raise ChromadockError(f"{path}: cannot be read ({error.strerror}): {mend}") from None
     except UnicodeDecodeError:

@@ -101,7 +101,7 @@ def test_no_coefficients_mean_no_distortion(written):
         ("[-0.3, 0.1,", "[-0.3, .nan,", "distortion_coefficients.data, number 2 is nan"),
         ("[-0.3, 0.1, 1e-05,", "[", "distortion_coefficients has 2 numbers"),
         ("plumb_bob", "rational_polynomial", "rational_polynomial has 8 or 12 or 14"),
-        ("plumb_bob", "equidistant", "equidistant is not supported: calibrate with plumb_bob"),
+        ("plumb_bob", "equidistant", "has 5 numbers, but equidistant has 4: correct the list"),
         ("plumb_bob\n", "[plumb_bob\n", "not valid YAML (line 9: "),
         (GOOD, "", "no keys"),
         (GOOD, "just words", "no keys"),

@@ -293,6 +293,16 @@ def test_a_bad_source_is_refused_in_one_line_that_tells_the_mend(folder, source,
     assert listed(folder) == before
 
 
+def test_a_dock_in_centimetres_is_refused_unless_confirmed(folder, detect_here):
+    places = {"a": (-44.5, -6), "b": (44.5, -6), "c": (0, 20)}
+    markers = [
+        f"[[marker]]\nname = '{n}'\nposition = [{x}, {y}, 0]" for n, (x, y) in places.items()
+    ]
+    (folder / "cm.toml").write_text("\n".join(markers))
+    refused(detect_here("in", "--dock", "cm.toml"), "centimetres, divide all by 100", "--yes")
+    assert detect_here("in", "--dock", "cm.toml", "--yes").returncode == 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -328,7 +338,8 @@ def test_a_bad_option_is_refused_in_one_line_that_tells_the_mend(
     camera = CAMERA.format(width=640, height=480, f=500)
     (folder / "keys.yaml").write_text(camera.replace("camera_matrix", "K"))
     (folder / "singular.yaml").write_text(CAMERA.format(width=640, height=480, f=0))
-    (folder / "small.yaml").write_text(CAMERA.format(width=320, height=240, f=500))
+    small = CAMERA.format(width=320, height=240, f=500).replace(" 320, ", " 160, ")
+    (folder / "small.yaml").write_text(small.replace(" 240, ", " 120, "))
     marker = '[[marker]]\nname = "{}"\nposition = [{}, {}, 0]\n'
     two = marker.format("a", 0, 0) + marker.format("b", 1, 0)
     (folder / "two.toml").write_text(two)

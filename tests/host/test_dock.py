@@ -1,6 +1,7 @@
 """DockGeometry: the default dock, and dock files that are wrong."""
 
 from importlib import resources
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 
+REPORTS = Path(__file__).resolve().parents[3] / "shared" / "data" / "reports" / "docks"
 THREE = {"a": "[0, 0, 0]", "b": "[0.5, 0, 0]", "c": "[0, 0.25, 0.1]"}
 
 
@@ -71,7 +73,15 @@ def test_three_markers_out_of_plane_and_whole_numbers_are_a_dock(load):
         ([*THREE.items(), ("d", "[nan, 1, 0]")], "marker d has a position that is not finite"),
         ([*THREE.items(), ("d", "[0, inf, 0]")], "marker d has a position that is not finite"),
         ([*THREE.items(), ("d", "[0, 0, 0]")], "markers a and d are at the same place"),
-        ([*THREE.items(), ("d", "[0, 445, 0]")], "marker d is 445 m from the centre: give metres"),
+        (
+            [*THREE.items(), ("d", "[0, 445, 0]")],
+            "up to 445 m apart: if these are millimetres, divide",
+        ),
+        ([*THREE.items(), ("d", "[0, 44.5, 0]")], "if these are centimetres, divide all by 100"),
+        (
+            [*THREE.items(), ("d", "[0, 4450, 0]")],
+            "marker d is 4450 m from the origin: give metres",
+        ),
         ([*THREE.items(), ("d", "[0, 1]")], "marker 4: position must be three numbers"),
         ([*THREE.items(), ("d", '[0, 1, "x"]')], "marker 4: position must be three numbers"),
         ([*THREE.items(), ("d", "true")], "marker 4: position must be three numbers"),
@@ -102,7 +112,15 @@ def test_markers_that_make_no_dock_are_refused_in_one_line(load, markers, says):
         ),
         ("colour = 'red'\n" + dock_text(THREE.items()), "colour is 'red': give \"#RRGGBB\""),
         ("colour = 255\n" + dock_text(THREE.items()), 'colour is 255: give "#RRGGBB"'),
-        ("color = 'white'\n" + dock_text(THREE.items()), "color: only colour, largest_range_m and"),
+        (
+            "color = 'white'\n" + dock_text(THREE.items()),
+            "color: only colour, largest_range_m, confirmed",
+        ),
+        ("confirmed = 1\n" + dock_text(THREE.items()), "confirmed is 1: give true or false"),
+        (
+            dock_text(THREE.items()) + "\nconfirmed = true",
+            "unknown key marker 3: confirmed: write it once, above the first [[marker]]",
+        ),
         ("[[marker]]\nposition = [0, 0, 0]", "marker 1: name is missing"),
         ("[[marker]]\nname = 'a'", "marker 1: position is missing"),
         ("[[marker]]\nname = 7\nposition = [0, 0, 0]", "marker 1: name is 7"),
@@ -115,6 +133,97 @@ def test_a_file_of_another_layout_is_refused_in_one_line(load, text, says):
     line = str(raised.value)
     assert says in line
     assert "\n" not in line
+
+
+ROS = np.array([[0, 0, 1.0], [-1, 0, 0], [0, -1, 0]])
+Z_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+"""From the dock's axes to ROS's, and to x right, y forward, z up."""
+
+SHAPES = {
+    "rectangle": DockGeometry.default().points,
+    "five": np.vstack([DockGeometry.default().points, (0, 0, -0.3)]),
+    "square": np.array([(x, y, 0) for x in (-0.4, 0.4) for y in (-0.4, 0.4)]),
+    "ring": np.array([(np.cos(a), np.sin(a), 0) for a in np.linspace(0, 6, 8)]),
+    "three": np.array([(0.5, 0, 0), (0, 0.25, 0), (-0.2, -0.3, 0)]),
+}
+
+
+def shaped(points, **more):
+    return DockGeometry(tuple(f"m{i}" for i in range(len(points))), points, "dock.toml", **more)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(
+    ("axes", "says"),
+    [(ROS, "ROS's (x forward, y left, z up) write [-y, -z, x]"), (Z_UP, "z up write [x, -z, y]")],
+)
+def test_a_dock_in_other_axes_is_refused_with_the_way_to_write_it(shape, axes, says):
+    points = SHAPES[shape]
+    for origin in ((0, 0, 0), (3, -20, 1)):
+        measured = (points + origin) @ axes.T
+        with pytest.raises(ChromadockError) as raised:
+            shaped(measured)
+        line = str(raised.value)
+        assert "edge-on (x is right, y down, z away from them)" in line
+        assert says in line
+        assert "\n" not in line and len(line) < 240
+        assert shaped(measured, confirmed=True).names
+    x, y, z = measured.T
+    written = np.column_stack([-y, -z, x] if axes is ROS else [x, -z, y])
+    assert np.allclose(shaped(written).points, points + origin)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        *SHAPES.values(),
+        # A row of lamps bent back at its ends, a box, one lamp straight before another, and a
+        # plane that is turned far away.
+        [(-0.5, 0, 0.1), (-0.17, 0, 0), (0.17, 0, 0), (0.5, 0, 0.1)],
+        [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0, 0.5)],
+        [(-0.5, -0.3, 0), (0.5, -0.3, 0), (0, 0.3, 0), (0, 0.3, -0.4)],
+        [(0, -0.3, 0), (0.2, -0.3, 0.5), (0, 0.3, 0), (0.2, 0.3, 0.5)],
+    ],
+)
+def test_a_dock_whose_markers_are_seen_apart_is_taken(points):
+    assert shaped(np.array(points)).confirmed is False
+
+
+def test_a_dock_of_more_than_10_metres_wants_to_be_confirmed(load):
+    text = dock_text([("a", "[0, 0, 0]"), ("b", "[12, 0, 0]"), ("c", "[0, 5, 0]")])
+    with pytest.raises(ChromadockError, match=r"13 m apart: .* confirm with --yes, or confirmed ="):
+        load(text)
+    assert load("confirmed = true\n" + text).points[1, 0] == 12
+    # However far from its origin: size is between markers.
+    assert load(text.replace("12", "8").replace("[0,", "[300,").replace("[8,", "[308,")).names
+
+
+def test_a_byte_order_mark_is_no_part_of_the_file(tmp_path):
+    text = dock_text(THREE.items()).replace("\n", "\r\n")
+    for encoding in ("utf-8-sig", "utf-16"):
+        (tmp_path / "dock.toml").write_bytes(text.encode(encoding))
+        assert DockGeometry.from_toml(tmp_path / "dock.toml").names == ("a", "b", "c")
+
+
+@pytest.mark.skipif(not REPORTS.is_dir(), reason="no reports: ../shared/data is missing")
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("bom.toml", None),
+        ("far_origin.toml", None),
+        ("centimetres.toml", "if these are centimetres, divide all by 100 (0.899 m)"),
+        ("ros_axes.toml", "ROS's (x forward, y left, z up) write [-y, -z, x]"),
+        ("z_up_plane.toml", "x right, y forward, z up write [x, -z, y]"),
+    ],
+)
+def test_files_of_reports_are_read_or_refused(name, says):
+    if says is None:
+        assert len(DockGeometry.from_toml(REPORTS / name).names) == 4
+        return
+    with pytest.raises(ChromadockError) as raised:
+        DockGeometry.from_toml(REPORTS / name)
+    assert says in str(raised.value)
+    assert DockGeometry.from_toml(REPORTS / name, confirmed=True).confirmed
 
 
 def test_a_missing_dock_file_is_refused(tmp_path):

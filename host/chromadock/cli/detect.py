@@ -29,12 +29,21 @@ def detect(
     ],
     camera: Annotated[
         Path | None,
-        typer.Option(help="camera_info YAML of your calibration.", show_default="a usual lens"),
+        typer.Option(
+            help="Camera file of your calibration: ROS, OpenCV or Kalibr.",
+            show_default="a usual lens",
+        ),
     ] = None,
     dock: Annotated[
         Path | None,
         typer.Option(help="TOML file with the dock's markers.", show_default="the original one"),
     ] = None,
+    yes: Annotated[
+        bool,
+        typer.Option(
+            "--yes", help="The dock is as its file says, even if beyond 10 m wide or edge-on."
+        ),
+    ] = False,
     method: Annotated[
         str, typer.Option(help=f"How to find it: {', '.join(METHODS)}.")
     ] = DEFAULT_METHOD,
@@ -101,7 +110,7 @@ def detect(
     from chromadock.marker_colour import MarkerColour
     from chromadock.sources import open_source
 
-    geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock)
+    geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock, yes)
     model = None if camera is None else CameraModel.from_yaml(camera)
     colour = None if marker_colour is None else MarkerColour.parse(marker_colour, "--marker-colour")
     detector = Detector(

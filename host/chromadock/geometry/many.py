@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.geometry.pose import Sighting
 
 Real = NDArray[np.float64]
-
-_LEAST_DEPTH_M = 1e-3  # of a marker: none is projected from behind the camera
 
 
 def rotations(turns: Real) -> Real:
@@ -37,16 +34,13 @@ def rotation_vectors(R: Real) -> Real:
 def errors(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]:
     """Reprojection errors (M, 2N) of M poses in standard deviations, and their derivatives
     (M, 2N, 6) by x, y, z and by turns about the camera's axes, as in ``geometry.pose``."""
-    count, zero = len(R), np.zeros(3)
+    count, optics = len(R), sighting.camera.optics
     arms = np.einsum("mij,nj->mni", R, sighting.points_dock)
-    seen = arms + t[:, None]
-    seen[..., 2] = np.maximum(seen[..., 2], _LEAST_DEPTH_M)
-    camera = sighting.camera
-    pixels, derivatives = cv2.projectPoints(
-        seen.reshape(-1, 3), zero, zero, camera.matrix, camera.distortion
-    )
-    by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(count, -1, 2, 3)
+    # No marker is projected from where the lens does not see.
+    seen = optics.within_reach(arms + t[:, None])
+    pixels, derivatives = optics.project(seen.reshape(-1, 3))
+    by_place = derivatives.reshape(count, -1, 2, 3)
     by_turn = np.cross(arms[:, :, None, :], by_place)
     both = np.concatenate([by_place, by_turn], axis=3) / sighting.sigma_px[:, None, None]
-    off = (np.asarray(pixels).reshape(count, -1, 2) - sighting.pixels) / sighting.sigma_px[:, None]
+    off = (pixels.reshape(count, -1, 2) - sighting.pixels) / sighting.sigma_px[:, None]
     return off.reshape(count, -1), both.reshape(count, -1, 6)

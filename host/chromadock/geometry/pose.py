@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -22,10 +23,11 @@ _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-9, 1e-3, 1e6
 _EXCLUDED = 20.0  # chi-square: a pose that fits by so much worse is not open; e^10 to one
 _SAME_ROTATION = 1e-3  # radians, between two minima that are one
 _LEAST_KNOWN = 1e-14  # of what is known best: less is lost in rounding
-# Markers' depths, in widths of the dock: nearer one is in the lens, farther the dock is a point,
-# and a search that came there ran away.
+# Markers' depths (see ``Lens``), in widths of the dock: nearer one is in the lens, farther the dock
+# is a point, and a search that came there ran away.
 _NEAREST, _FARTHEST = 1e-3, 1e4
 _PLANAR = 1e-6  # thickness over width of a set of points
+_NEAR_AXIS = 0.5  # cosine: a flat picture stretches what is farther from its middle
 
 
 def epnp(
@@ -40,20 +42,23 @@ def epnp(
 
     Returns
     -------
-    The pose, or None where there is none in front of the camera.
+    The pose, or None where there is none that the camera sees whole.
     """
-    rays = camera.undistort(pixels)
-    solved, rotation, translation = cv2.solvePnP(
-        points_dock, rays, np.eye(3), None, flags=cv2.SOLVEPNP_EPNP
-    )
-    if not solved or not (np.isfinite(rotation).all() and np.isfinite(translation).all()):
+    flat = _Flat.of(camera, pixels)
+    if flat is None:
         return None
-    R = np.asarray(cv2.Rodrigues(rotation)[0], dtype=np.float64)
-    points_camera = points_dock @ R.T + translation.ravel()
-    if (points_camera[:, 2] <= 0).any():
+    solved, rotation, translation = cv2.solvePnP(
+        points_dock, flat.places, np.eye(3), None, flags=cv2.SOLVEPNP_EPNP
+    )
+    found = flat.poses([rotation], [translation])
+    if not solved or not found:
+        return None
+    [(R, t)] = found
+    points_camera = points_dock @ R.T + t
+    if not camera.optics.sees(points_camera).all():
         return None
     error = camera.project(points_camera) - pixels
-    x, y, z = translation.ravel().tolist()
+    x, y, z = t.tolist()
     return Pose(
         t=(x, y, z),
         q_wxyz=quaternion_from_matrix(R),
@@ -130,7 +135,7 @@ class Sighting:
         self, R: NDArray[np.float64], t: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
         """Reprojection errors (2N,) of a pose (3, 3), (3,) in standard deviations, and their
-        derivatives (2N, 6) as those of ``projected``; None where a marker is behind the camera."""
+        derivatives (2N, 6) as those of ``projected``; None where a marker is out of its view."""
         seen = projected(self.points_dock, R, t, self.camera)
         if seen is None:
             return None
@@ -154,7 +159,7 @@ def estimates(sighting: Sighting) -> tuple[Estimate, ...]:
 
     Returns
     -------
-    None, one or two estimates, of three markers up to four; all markers in front of the camera.
+    None, one or two estimates, of three markers up to four; all markers where the lens sees.
     """
     centre = sighting.points_dock.mean(axis=0)
     return tuple(pose.about(-centre) for pose in _estimates(sighting.about(centre)))
@@ -179,8 +184,8 @@ def refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64]) 
     """The minimum of chi-square downhill of a pose, by Levenberg and Marquardt's method.
 
     Searched about the markers' centroid, so that the origin of the dock frame does not matter.
-    None where a marker would be behind the camera, none is reached in so many rounds (the way
-    there leads through poses that hardly fit), or it has a marker in the lens or all in one point.
+    None where a marker would be out of view, none is reached in so many rounds (the way there
+    leads through poses that hardly fit), or it has a marker in the lens or all in one point.
     """
     centre = sighting.points_dock.mean(axis=0)
     pose = _refined(sighting.about(centre), R, t + R @ centre)
@@ -210,7 +215,8 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
                 break
     else:
         return None
-    depths = (sighting.points_dock @ R.T + t)[:, 2] / np.ptp(sighting.points_dock, axis=0).max()
+    depths = sighting.camera.optics.depth(sighting.points_dock @ R.T + t)
+    depths = depths / np.ptp(sighting.points_dock, axis=0).max()
     if not (depths.min() > _NEAREST and depths.max() < _FARTHEST):
         return None
     off = now.error.reshape(-1, 2) * sighting.sigma_px[:, None]
@@ -241,21 +247,19 @@ def projected(
     """Pixels (N, 2) of markers at a pose, and their derivatives (N, 2, 6).
 
     The derivatives are by x, y, z and by turns about the camera's axes, as in ``Estimate``.
-    None where a marker is behind the camera.
+    None where a marker is out of the lens's view: of a pinhole behind the camera.
     """
     arms = points_dock @ R.T
     seen = arms + t
-    if (seen[:, 2] <= 0).any():
+    if not camera.optics.sees(seen).all():
         return None
-    zero = np.zeros(3)
-    pixels, derivatives = cv2.projectPoints(seen, zero, zero, camera.matrix, camera.distortion)
-    by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(-1, 2, 3)
+    pixels, by_place = camera.optics.project(seen)
     both = np.empty((len(arms), 2, 6))
     both[..., :3] = by_place
     # The arms' cross product with them, by components: np.cross takes several times as long.
     (ax, ay, az), (x, y, z) = arms.T[..., None], by_place.transpose(2, 0, 1)
     both[..., 3], both[..., 4], both[..., 5] = ay * z - az * y, az * x - ax * z, ax * y - ay * x
-    return np.asarray(pixels, np.float64).reshape(-1, 2), both
+    return pixels, both
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -279,15 +283,13 @@ class _Fit:
 
 def _of_three(sighting: Sighting) -> tuple[Estimate, ...]:
     """All poses of three markers, the least turned first."""
-    rays = sighting.camera.undistort(sighting.pixels)
+    flat = _Flat.of(sighting.camera, sighting.pixels)
+    if flat is None:
+        return ()
     _, rotations, translations = cv2.solveP3P(
-        sighting.points_dock, rays, np.eye(3), None, flags=cv2.SOLVEPNP_AP3P
+        sighting.points_dock, flat.places, np.eye(3), None, flags=cv2.SOLVEPNP_AP3P
     )
-    starts = [
-        (_matrix(rotation), np.asarray(translation, np.float64).ravel())
-        for rotation, translation in zip(rotations, translations, strict=True)
-        if np.isfinite(rotation).all() and np.isfinite(translation).all()
-    ]
+    starts = flat.poses(rotations, translations)
     # Of two poses close together noise may leave none that fits exactly, but one that fits well.
     starts += [(_matrix(np.zeros(3)), t) for _, t in starts]
     found: list[Estimate] = []
@@ -306,19 +308,61 @@ def _first_guess(
     """Some pose of four markers or more near one of the minima, without need of a start."""
     spread = np.linalg.svd(_centred(sighting.points_dock), compute_uv=False)
     planar = spread[2] < _PLANAR * spread[0]
-    rays = sighting.camera.undistort(sighting.pixels)
+    flat = _Flat.of(sighting.camera, sighting.pixels)
+    if flat is None:
+        return None
     _, rotations, translations, _ = cv2.solvePnPGeneric(
         sighting.points_dock,
-        rays,
+        flat.places,
         np.eye(3),
         None,
         # SQPnP's guess for a dock with depth is now and then behind the camera.
         flags=cv2.SOLVEPNP_IPPE if planar else cv2.SOLVEPNP_EPNP,
     )
-    for rotation, translation in zip(rotations, translations, strict=True):
-        if np.isfinite(rotation).all() and np.isfinite(translation).all():
-            return _matrix(rotation), np.asarray(translation, np.float64).ravel()
-    return None
+    return next(iter(flat.poses(rotations, translations)), None)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Flat:
+    """Markers as a pinhole would see them, for solvers that know of no other camera.
+
+    ``places`` (N, 2): normalised coordinates; ``R_camera_flat`` (3, 3): that pinhole's axes.
+    """
+
+    places: NDArray[np.float64]
+    R_camera_flat: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, camera: CameraModel, pixels: NDArray[np.float64]) -> _Flat | None:
+        """With the camera's axes, unless a marker is far off its own: then it looks at them.
+
+        None where no ray comes to one, or they are all around.
+        """
+        rays = camera.rays(pixels)
+        if (rays[:, 2] > _NEAR_AXIS).all():
+            return cls(camera.undistort(pixels), np.eye(3))
+        ahead = rays.mean(axis=0)
+        if not np.linalg.norm(ahead) > 0:  # NaN too
+            return None
+        z = ahead / np.linalg.norm(ahead)
+        # Any turn will do; this one is never far from singular.
+        x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
+        x /= np.linalg.norm(x)
+        R = np.column_stack([x, np.cross(z, x), z])
+        turned = rays @ R
+        if not (turned[:, 2] > 0).all():
+            return None
+        return cls(turned[:, :2] / turned[:, 2:], R)
+
+    def poses(
+        self, rotations: Sequence[ArrayLike], translations: Sequence[ArrayLike]
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Solutions as rotation vectors and places, those that are finite, in the camera's axes."""
+        return [
+            (self.R_camera_flat @ _matrix(r), self.R_camera_flat @ np.asarray(t, float).ravel())
+            for r, t in zip(rotations, translations, strict=True)
+            if np.isfinite(r).all() and np.isfinite(t).all()
+        ]
 
 
 def _tilted_back(estimate: Estimate, points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,8 @@ from chromadock.paper.constellation import CORNERS, Rectangle, corners, four_blo
 from chromadock.paper.mask import colour_mask, foreground
 from chromadock.paper.peaks import Spot
 from chromadock.results.detection import Blob
+from chromadock.results.pose import Pose
+from chromadock.rotation import matrix_from_quaternion
 from chromadock.stopwatch import Stopwatch
 
 
@@ -49,7 +53,7 @@ class PaperMethod:
 
         pose = None
         if indices is not None:
-            pose = epnp(self._dock.points, points[indices], camera)
+            pose = self._pose(points[indices], camera)
         watch.lap("pose")
 
         markers = None
@@ -65,6 +69,16 @@ class PaperMethod:
             markers=markers,
             pose=pose,
         )
+
+    def _pose(self, pixels: NDArray[np.float64], camera: CameraModel) -> Pose | None:
+        """Of the dock's own frame, solved for about the centroid: wherever its origin is."""
+        centre = self._dock.centre
+        pose = epnp(self._dock.points - centre, pixels, camera)
+        farthest = self._dock.largest_range_m
+        if pose is None or (farthest is not None and np.linalg.norm(pose.t) > farthest):
+            return None
+        x, y, z = (np.array(pose.t) - matrix_from_quaternion(pose.q_wxyz) @ centre).tolist()
+        return replace(pose, t=(x, y, z))
 
     def _by_corner(self, points: NDArray[np.float64], chosen: list[int]) -> list[int] | None:
         """The blob of each dock marker, in the geometry's order."""

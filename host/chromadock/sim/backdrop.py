@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,4 +96,4 @@ def _shrunk(camera: CameraModel) -> CameraModel:
     scale = np.diag([width / camera.width, height / camera.height, 1.0])
     shift = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
     matrix = np.linalg.inv(shift) @ scale @ shift @ camera.matrix
-    return CameraModel(width, height, matrix, camera.distortion, camera.name)
+    return replace(camera, width=width, height=height, matrix=matrix)

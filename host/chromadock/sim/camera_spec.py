@@ -10,7 +10,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from chromadock.camera import DISTORTION_COUNTS, CameraModel
+from chromadock.camera import CameraModel
+from chromadock.lens import PINHOLE_COUNTS
 from chromadock.sim.control import AutoControl, ControlSpec
 from chromadock.sim.response import Response
 from chromadock.sim.sensor import Sensor
@@ -83,7 +84,7 @@ _Pixels = Annotated[
 
 
 def _as_opencv(distortion: list[float]) -> list[float]:
-    if len(distortion) not in DISTORTION_COUNTS:
+    if len(distortion) not in PINHOLE_COUNTS:
         raise ValueError("count")
     return distortion
 

@@ -203,7 +203,7 @@ def _write_camera(path: Path, camera: CameraModel) -> None:
         "image_width": camera.width,
         "image_height": camera.height,
         "camera_matrix": {"rows": 3, "cols": 3, "data": camera.matrix.ravel().tolist()},
-        "distortion_model": "plumb_bob" if camera.distortion.size <= 5 else "rational_polynomial",
+        "distortion_model": camera.lens,
         "distortion_coefficients": {
             "rows": 1,
             "cols": camera.distortion.size,

@@ -51,7 +51,7 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
     measurement with a normal error: noise makes a plane that faces the camera look tilted, and
     the more it does the surer the tilt looks, so their mean is tilted too.
 
-    None where a marker would be behind the camera, or nowhere near.
+    None where a marker would be out of the camera's view, or nowhere near.
     """
     P = state.covariance
     prior = np.linalg.inv(P[POSE, POSE])

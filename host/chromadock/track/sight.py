@@ -46,7 +46,7 @@ class Sight:
     ) -> Sight | None:
         """From what a method found: ``markers`` with standard deviations in their order.
 
-        None where the best pose has a marker behind the camera.
+        None where the best pose has a marker out of the camera's view.
         """
         points = dock.points[[dock.names.index(name) for name in markers]]
         best = poses[0]

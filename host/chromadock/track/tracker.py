@@ -65,7 +65,7 @@ class Tracker:
 
     def __init__(self, dock: DockGeometry, mounting: Mounting | None = None) -> None:
         self._centre = dock.centre
-        self._dock = DockGeometry(dock.names, dock.points - dock.centre, dock.source, dock.colour)
+        self._dock = replace(dock, points=dock.points - dock.centre)
         self._told = mounting
         self._mounting = mounting_or_default(mounting)
         self._memory = Memory()

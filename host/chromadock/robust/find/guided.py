@@ -71,7 +71,7 @@ class Expectation:
 
     @property
     def spacing_px(self) -> float:
-        """Pixels between the two markers that are closest to each other; 0 behind the camera."""
+        """Pixels between the two markers that are closest to each other; 0 out of view."""
         if self._places is None:
             return 0.0
         apart = np.linalg.norm(self._places[:, None] - self._places, axis=2)

@@ -137,14 +137,18 @@ class Measure:
             self._note(candidate.evidence, poses[0].reprojection_px)
             return None
         poses, weights, sighting = _again(sighting, poses, placed)
-        wide = tuple(widened(sighting, pose) for pose in poses)
-        if np.linalg.norm(wide[0].t) > self.largest_range_m:
+        if self._too_far(poses):
             return None
+        wide = tuple(widened(sighting, pose) for pose in poses)
         if not self._all_belong(candidate, sighting, wide[0]):
             return None
         markers = np.arange(len(self.view.points))
         unsure = self._doubt(sighting, wide, weights)
         return Constellation(markers, xy[k], sighting.sigma_px, evidence, wide, unsure)
+
+    def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
+        """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
+        return bool(np.linalg.norm(poses[0].t) > self.largest_range_m)
 
     def _all_belong(self, candidate: Candidate, sighting: Sighting, pose: Estimate) -> bool:
         """Whether each marker is likelier where it was taken to be than hidden, with a peak of
@@ -200,6 +204,8 @@ class Measure:
         if evidence < LEAST_FOR_A_TRACK:
             return None
         poses, weights, sighting = _again(sighting, poses, placed)
+        if self._too_far(poses):
+            return None
         poses = poses if priors else tuple(widened(sighting, pose) for pose in poses)
         # About a track's pose the track says how sure the place is.
         unsure = 0.0 if priors else self._doubt(sighting, poses, weights)

@@ -86,12 +86,7 @@ class View:
 
     def is_of(self, camera: CameraModel) -> bool:
         """Whether this camera's geometry is the same."""
-        mine = self.camera
-        return mine is camera or (
-            (mine.width, mine.height) == (camera.width, camera.height)
-            and np.array_equal(mine.matrix, camera.matrix)
-            and np.array_equal(mine.distortion, camera.distortion)
-        )
+        return self.camera is camera or self.camera.key == camera.key
 
     def prior(
         self,

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.geometry.pose import Estimate, Sighting, projected
+from chromadock.lens import Lens
 
 Real = NDArray[np.float64]
 
@@ -51,12 +52,11 @@ class PosePrior:
         """(3, 3): the inverse of the covariance."""
         return np.asarray(np.linalg.inv(self.R_covariance))
 
-    def log_density(self, R: Real, t: Real) -> float:
-        """Of a pose, a cubic metre and cubic radian."""
-        # A volume of z^3 / f^2 lies behind each square pixel and e-folding of range.
-        place = (
-            2 * np.log(self.focal_px) - 3 * np.log(t[2]) - np.log(self.area_px * self.log_ranges)
-        )
+    def log_density(self, R: Real, t: Real, optics: Lens) -> float:
+        """Of a pose before that lens, a cubic metre and cubic radian."""
+        # That volume over f^2 lies behind each square pixel and e-folding of range.
+        volume = float(optics.log_volume(t))
+        place = 2 * np.log(self.focal_px) - volume - np.log(self.area_px * self.log_ranges)
         turn = cv2.Rodrigues(R @ self.R_expected.T)[0].ravel()
         norm = 0.5 * np.linalg.slogdet(2 * np.pi * self.R_covariance)[1]
         return float(place - 0.5 * turn @ self.R_information @ turn - norm)
@@ -88,13 +88,14 @@ def placement(sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior)
 def _of_pose(sighting: Sighting, pose: Estimate, prior: PosePrior, variances: Real) -> Real:
     """(M,) log density of the places about one pose, for (M, N) variances of theirs."""
     seen = projected(sighting.points_dock, pose.R, pose.t, sighting.camera)
-    if seen is None or pose.t[2] <= 0:
+    optics = sighting.camera.optics
+    if seen is None or not optics.sees(pose.t):
         return np.full(len(variances), -np.inf)
     pixels, jacobian = seen
     square = ((pixels - sighting.pixels) ** 2).sum(axis=1)
     known = np.einsum("nki,nkj,mn->mij", jacobian, jacobian, 1 / variances)
     known[:, 3:, 3:] += prior.R_information
-    known[:, :3, :3] += np.eye(3) / pose.t[2] ** 2
+    known[:, :3, :3] += np.eye(3) / float(optics.depth(pose.t)) ** 2
     fit = -0.5 * (square / variances).sum(axis=1) - np.log(2 * np.pi * variances).sum(axis=1)
     volume = 3 * np.log(2 * np.pi) - 0.5 * np.linalg.slogdet(known)[1]
-    return np.asarray(fit + volume + prior.log_density(pose.R, pose.t))
+    return np.asarray(fit + volume + prior.log_density(pose.R, pose.t, optics))

@@ -6,7 +6,8 @@ two markers p and q as a base, marker m has the complex coordinate
 poses shapes are close to a normal distribution, if sizes are looked at apart; it is learnt
 from simulated views and so holds for docks of any geometry.
 
-Places are complex numbers x + iy in ideal pixels: focal length times tangent, no distortion.
+Places are complex numbers x + iy in ideal pixels: focal length times the lens's ideal places
+(see ``lens``), for a pinhole tangents, without distortion.
 """
 
 from __future__ import annotations
@@ -99,9 +100,7 @@ class ShapeModel:
     @classmethod
     def learn(cls, points: Real, camera: CameraModel) -> ShapeModel:
         """Simulate views of (n, 3) markers; the same for the same markers and camera."""
-        points = np.ascontiguousarray(points, np.float64)
-        geometry = (camera.matrix.tobytes(), camera.distortion.tobytes())
-        return _learnt(points.tobytes(), camera.width, camera.height, *geometry)
+        return _learnt(np.ascontiguousarray(points, np.float64).tobytes(), camera.key)
 
     @classmethod
     def _of(cls, points: Real, camera: CameraModel) -> ShapeModel:
@@ -155,10 +154,9 @@ class ShapeModel:
 
 
 @lru_cache(maxsize=32)
-def _learnt(points: bytes, width: int, height: int, matrix: bytes, lens: bytes) -> ShapeModel:
+def _learnt(points: bytes, key: tuple[int, int, bytes, bytes, str]) -> ShapeModel:
     """The model of a dock and a camera: a second detector need not learn it again."""
-    camera = CameraModel(width, height, np.frombuffer(matrix).reshape(3, 3), np.frombuffer(lens))
-    return ShapeModel._of(np.frombuffer(points).reshape(-1, 3), camera)
+    return ShapeModel._of(np.frombuffer(points).reshape(-1, 3), CameraModel.of_key(key))
 
 
 def stacked(values: Complex) -> Real:
@@ -175,8 +173,8 @@ def _as_real(matrices: Complex) -> Real:
 
 def ideal(pixels: Real, camera: CameraModel) -> Complex:
     """(N, 2) pixels to (N,) places without the lens's distortion."""
-    rays = focal_px(camera) * camera.undistort(pixels)
-    return np.ascontiguousarray(rays).view(np.complex128).ravel()
+    places = focal_px(camera) * camera.optics.ideal(pixels)
+    return np.ascontiguousarray(places).view(np.complex128).ravel()
 
 
 def focal_px(camera: CameraModel) -> float:
@@ -197,8 +195,8 @@ def _order(points: Real) -> tuple[int, ...]:
 
 def _views(points: Real, camera: CameraModel) -> tuple[Complex, NDArray[np.intp]]:
     """(V, n) places of the markers in views that the camera sees whole, and the facet of each."""
-    rng = np.random.default_rng(0)
-    corners = camera.undistort([(0, 0), (camera.width - 1, camera.height - 1)])
+    rng, optics = np.random.default_rng(0), camera.optics
+    corners = optics.ideal(np.array([(0.0, 0.0), (camera.width - 1.0, camera.height - 1.0)]))
     low, high = corners.min(axis=0), corners.max(axis=0)
     apart = np.linalg.norm(points[:, None] - points[None], axis=2)
     nearest = float(apart.max() / np.linalg.norm(high - low))
@@ -206,16 +204,14 @@ def _views(points: Real, camera: CameraModel) -> tuple[Complex, NDArray[np.intp]
     farthest /= FINEST_SPACING_CELLS * finest_cell(camera.width, camera.height)
     # Even in log range; a camera too coarse for this dock still gets views at twice the nearest.
     ranges = nearest * max(farthest / nearest, 2.0) ** rng.random(_VIEWS)
-    rays = np.column_stack([rng.uniform(low, high, (_VIEWS, 2)), np.ones(_VIEWS)])
-    centres = rays * (ranges / np.linalg.norm(rays, axis=1))[:, None]
+    centres = optics.rays_of(rng.uniform(low, high, (_VIEWS, 2))) * ranges[:, None]
     R = _rotations(rng.standard_normal((_VIEWS, 3)) * ATTITUDE_RAD)
     seen = np.einsum("vij,nj->vni", R, points) + centres[:, None]
-    in_front = (seen[..., 2] > 0).all(axis=1)
-    seen = seen[in_front]
-    tangents = seen[..., :2] / seen[..., 2:]
-    whole = ((tangents > low) & (tangents < high)).all(axis=(1, 2))
-    z = focal_px(camera) * (tangents[whole] @ np.array([1, 1j]))
-    return np.asarray(z), _facets(R[in_front][whole], centres[in_front][whole])
+    in_view = optics.sees(seen).all(axis=1)
+    places = optics.ideal_of(seen[in_view])
+    whole = ((places > low) & (places < high)).all(axis=(1, 2))
+    z = focal_px(camera) * (places[whole] @ np.array([1, 1j]))
+    return np.asarray(z), _facets(R[in_view][whole], centres[in_view][whole])
 
 
 def _facets(R: Real, centres: Real) -> NDArray[np.intp]:

@@ -35,7 +35,7 @@ def doubt_over_tilts(sighting: Sighting, told: Estimate, prior: PosePrior) -> fl
     if len(sighting.pixels) <= MIN_MARKERS:
         return None
     R, t = _fitted(sighting, told, prior)
-    ahead = np.isfinite(t).all(axis=1) & (t[:, 2] > 0)
+    ahead = np.isfinite(t).all(axis=1) & sighting.camera.optics.sees(t)
     if not ahead.any():
         return None
     R, t = R[ahead], t[ahead]
@@ -44,7 +44,7 @@ def doubt_over_tilts(sighting: Sighting, told: Estimate, prior: PosePrior) -> fl
     turn = rotation_vectors(R @ prior.R_expected.T)
     log_density -= 0.5 * np.einsum("mi,ij,mj->m", turn, prior.R_information, turn)
     # Of places, as in PosePrior.log_density.
-    log_density -= 3 * np.log(t[:, 2])
+    log_density -= sighting.camera.optics.log_volume(t)
     weights = np.exp(log_density - log_density.max())
     weights /= weights.sum()
     if 1 / (weights**2).sum() < _LEAST_TILTS:

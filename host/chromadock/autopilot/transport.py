@@ -18,7 +18,7 @@ from pymavlink import mavutil
 
 from chromadock.autopilot.settings import Address
 
-WRITE_TIMEOUT_S = 1.0
+WRITE_TIMEOUT_S = 0.5
 """A port that takes nothing for so long is as good as gone."""
 
 _CHUNK = 65536

@@ -1,8 +1,11 @@
 """The vehicle's own position by the dock: VISION_POSITION_ESTIMATE (102) and ODOMETRY (331).
 
-Both are of the vehicle in axes north, east, down whose origin is the dock.  Roll, pitch and yaw are
-those that the autopilot told itself, given back, and their variance says that nothing is to be
-learnt from them: north is the autopilot's own, by its compass.
+Both are of the vehicle in axes north, east, down whose origin is the dock.  North is by the
+autopilot's own compass: the camera knows nothing of it.  ArduPilot is given back the roll, pitch
+and yaw that it told itself, with a variance by which nothing is to be learnt from them.  PX4 is
+given none: as it is delivered (``EKF2_EV_CTRL`` 15) it would take that yaw in place of its
+compass's and so hold on to its own; where the attitude is not a number it takes the place alone
+(``EKF2::UpdateExtVisionSample``).
 """
 
 from __future__ import annotations
@@ -16,7 +19,6 @@ from chromadock.autopilot.receivers import Receiver
 from chromadock.autopilot.wire import Message
 from chromadock.mounting import Mounting
 from chromadock.results.track import TrackedPose
-from chromadock.rotation import quaternion_from_matrix
 from chromadock.track.attitude import Attitude
 
 _NAN = math.nan
@@ -62,7 +64,7 @@ def vision_message(
         x=x,
         y=y,
         z=z,
-        q=quaternion_from_matrix(R_ned_body),
+        q=[_NAN] * 4,
         # The track's velocity comes of the same places: told too, it would count twice.
         vx=_NAN,
         vy=_NAN,

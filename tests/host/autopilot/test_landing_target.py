@@ -12,8 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v10 import common as mavlink1
 from pymavlink.dialects.v20 import common as mavlink
+from track_truth import CAMERA, DOCK, approach, found
 
-from chromadock import Attitude, Mounting, Track
+from chromadock import Attitude, Mounting, Track, Tracker
 from chromadock.autopilot.frame_messages import frame_messages
 from chromadock.autopilot.landing_target import BACK, DOWN, FORWARD, landing_target, plnd_orient
 from chromadock.autopilot.receivers import COPTER, PX4, ROVER, SUB
@@ -211,3 +212,17 @@ def test_px4_understands_what_is_meant_however_the_vehicle_lies(body: Any, angle
     )
     on_earth = np.array([-7.0, 20.0, 3.0]) + turned(*angles) @ body
     assert understood(PX4, decoded(message)).place == pytest.approx(on_earth, abs=1e-4)
+
+
+def test_a_dock_that_is_approached_is_understood_to_be_where_it_is() -> None:
+    """From the markers' noisy pixels, by the tracker, the wire and the receiver's rules."""
+    tracker, rng, errors = Tracker(DOCK), np.random.default_rng(5), list[float]()
+    for k in range(40):
+        time_s = k / 10
+        track = tracker.update(time_s, tracker.plan(time_s), found(approach(time_s), rng), CAMERA)
+        for message in frame_messages(ROVER, False, time_s, track, AHEAD, None, None, 0):
+            place = understood(ROVER, decoded(message)).place
+            truth = AHEAD.R_body_camera @ approach(time_s)[1]
+            errors.append(float(np.linalg.norm(place - truth) / np.linalg.norm(truth)))
+    # Locked after 0.1 s or more, and from then on in each frame.
+    assert 30 < len(errors) < 40 and max(errors) < 0.05

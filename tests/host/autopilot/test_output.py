@@ -7,7 +7,7 @@ import socket
 import time
 import tty
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from itertools import pairwise
 from typing import Any
 
@@ -79,12 +79,12 @@ def test_over_udp_a_rover_is_told_by_mavlink_2_as_component_191_of_its_own_syste
 def test_at_most_the_set_number_of_frames_a_second_is_told() -> None:
     with udp_link() as (out, peer):
         start_s = time.monotonic()
-        while time.monotonic() < start_s + 1.2:
+        while time.monotonic() < start_s + 0.8:
             frame(out)  # each 20 ms
             peer.step()
         elapsed_s = time.monotonic() - start_s
         peer.step()
-        assert 10 <= len(peer.named("LANDING_TARGET")) <= 15 * elapsed_s + 2
+        assert 6 <= len(peer.named("LANDING_TARGET")) <= 15 * elapsed_s + 2
 
 
 def test_a_sub_is_told_its_own_place_by_its_own_attitude_at_the_frames_time() -> None:
@@ -243,7 +243,8 @@ def test_a_line_that_takes_no_more_bytes_does_not_hold_up_the_frames() -> None:
         longest_s, end_s = 0.0, time.monotonic() + 10
         while not out.told and time.monotonic() < end_s:
             with suppress(BlockingIOError):
-                peer.send(mavlink.MAVLink_ping_message(1, 2, 0, 0))
+                for _ in range(20):
+                    peer.send(mavlink.MAVLink_ping_message(1, 2, 0, 0))
             before_s = time.monotonic()
             frame(out)
             longest_s = max(longest_s, time.monotonic() - before_s)
@@ -255,27 +256,30 @@ def test_a_line_that_takes_no_more_bytes_does_not_hold_up_the_frames() -> None:
     board.pull()
 
 
-@pytest.mark.parametrize(
-    ("address", "reason"),
-    [
-        ("udpout:no.such.host.invalid:14550", ""),
-        ("/dev/no-such-port:57600", "No such file or directory"),
-        ("/dev/null", ""),
-        ("udpin:192.0.2.1:14550", "Cannot assign requested address"),
-    ],
-)
+UNOPENED = {
+    "udpout:no.such.host.invalid:14550": "",  # the resolver's words
+    "/dev/no-such-port:57600": "No such file or directory",
+    "/dev/null": "",  # pyserial's words
+    "udpin:192.0.2.1:14550": "Cannot assign requested address",
+}
+
+
 def test_what_cannot_be_opened_is_told_in_one_line_and_holds_nobody_up(
-    address: str, reason: str, capfd: pytest.CaptureFixture[str]
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
-    with output(address) as out:
-        until(lambda: out.told)
+    with ExitStack() as stack:
+        outs = {address: stack.enter_context(output(address)) for address in UNOPENED}
+        until(lambda: all(out.told for out in outs.values()))
         before_s = time.monotonic()
         for _ in range(20):
-            frame(out)
-        assert time.monotonic() - before_s < 0.5
-        time.sleep(0.7)  # it is tried again meanwhile
-        assert len(out.told) == 1 and "\n" not in out.told[0]
-        assert out.told[0].startswith(f"{out._settings.address}: ") and reason in out.told[0]
+            for out in outs.values():
+                frame(out)
+        assert time.monotonic() - before_s < 1.0
+        time.sleep(0.7)  # they are tried again meanwhile
+        for address, out in outs.items():
+            assert len(out.told) == 1 and "\n" not in out.told[0]
+            assert out.told[0].startswith(f"{out._settings.address}: ")
+            assert UNOPENED[address] in out.told[0]
     assert capfd.readouterr() == ("", "")
 
 

@@ -162,14 +162,18 @@ class AutopilotOutput:
 
     @property
     def latency_s(self) -> float | None:
-        """Least time from a frame to its message, of the newest hundred: what PLND_LAG,
-        VISO_DELAY_MS or EKF2_EV_DELAY should be.  None where it cannot be known."""
+        """Least time from a frame to its message, of the newest hundred; None where it cannot be
+        known.  ArduPilot cannot see it (``stamps``) and must be told by a parameter; PX4 can, by
+        TIMESYNC."""
         if not self._latencies_s or self._times.foreign:
             return None
         return min(self._latencies_s)
 
     def close(self) -> None:
         """End the thread and let go of the port."""
+        if self._closing.is_set():
+            return
+        self._say_delay()
         self._closing.set()
         self._awake()
         self._thread.join(CLOSING_S)
@@ -184,6 +188,18 @@ class AutopilotOutput:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+    def _say_delay(self) -> None:
+        """What ArduPilot's parameters for the delay should be, by this run."""
+        latency_s, receiver = self.latency_s, self._settings.receiver
+        if latency_s is None or receiver.autopilot != mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA:
+            return
+        names = [f"VISO_DELAY_MS {1000 * latency_s:.0f}"] if self._settings.vision else []
+        names += [f"PLND_LAG {latency_s:.2f}"] if receiver.landing_target else []
+        self._say(
+            f"a frame is told of {1000 * latency_s:.0f} ms after it was taken or later: "
+            f"the vehicle should have {' and '.join(names)}"
+        )
 
     def _is_told(self, track: Track) -> bool:
         """Whether a frame is not newer than the newest: the track has not used it then."""

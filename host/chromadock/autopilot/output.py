@@ -106,20 +106,24 @@ class AutopilotOutput:
         self._thread = threading.Thread(target=self._run, name="autopilot", daemon=True)
         self._thread.start()
 
-    def attitude(self, time_s: float) -> Attitude | None:
+    def attitude(self, time_s: float, age_s: float | None = None) -> Attitude | None:
         """The vehicle's own at a frame's time, for ``Detector.process``; None while it is unknown.
 
-        Ask before the frame is processed, so that its time is known best.
+        As for ``write``, but ``age_s`` by now.
         """
-        ours_s = self._times.ours(time_s, self._clock())
+        ours_s = self._times.ours(time_s, self._clock(), age_s)
         with self._shared:
             return self._companion.telemetry.attitude(ours_s)
 
-    def write(self, time_s: float, detection: Detection) -> None:
-        """Tell of a frame that was taken at ``time_s``.
+    def write(self, time_s: float, detection: Detection, age_s: float | None = None) -> None:
+        """Tell of a frame.
 
-        Seconds of ``clock``; of another clock they are mapped to it, without the delay of the
-        detection, which nobody can know then.
+        Parameters
+        ----------
+        time_s : when it was taken, seconds; of ``clock``, or of any that tells the age with it.
+        detection : what the detector says of it.
+        age_s : how old it is by now, seconds; None where nobody knows.  Times of another clock are
+            mapped then, without the delay of the detection, which nobody can know.
         """
         track = detection.track
         if track is None:
@@ -128,7 +132,7 @@ class AutopilotOutput:
             )
             return
         now_s = self._clock()
-        ours_s = self._times.ours(time_s, now_s)
+        ours_s = self._times.ours(time_s, now_s, age_s)
         if self._times.foreign:
             self._say_once(
                 "the frames' times are not of this computer's monotonic clock: the vehicle is told "

@@ -127,6 +127,17 @@ def test_frames_by_our_own_clock_keep_their_times_and_others_are_mapped() -> Non
     assert others.foreign is True
 
 
+def test_frames_that_tell_their_age_are_told_when_they_were_taken() -> None:
+    """Whatever else is done between the age and the output, which makes it too late to say."""
+    times, rng = FrameTimes(), np.random.default_rng(4)
+    mapped = list[float]()
+    for k in range(200):
+        age_s, busy_s = float(rng.uniform(0.04, 0.3)), float(rng.exponential(0.005))
+        mapped.append(times.ours(k / 20, 5000.0 + k / 20 + age_s + busy_s, age_s))
+    assert times.foreign is False
+    assert np.abs(np.array(mapped[20:]) - (5000.0 + np.arange(20, 200) / 20)).max() < 0.001
+
+
 def test_mapped_times_never_go_back_even_where_a_recording_is_read_fast() -> None:
     times, mapped = FrameTimes(), list[float]()
     for k in range(300):

@@ -309,6 +309,21 @@ def test_frames_without_a_track_and_of_another_clock_are_told_of_once() -> None:
         assert out.latency_s is None
 
 
+def test_frames_of_a_cameras_own_clock_that_tell_their_age_need_no_word() -> None:
+    with udp_link() as (out, peer):
+        start_s = time.monotonic() - LATE_S
+        for k in range(8):
+            age_s = time.monotonic() - start_s - k / 10
+            out.write(k / 10, detection(tracked(k / 10, pose_at(BODY))), age_s)
+            peer.step()
+            time.sleep(0.08)
+        peer.step()
+        assert out.told == [] and LATE_S <= out.latency_s < LATE_S + 0.05
+        stamps = [m.time_usec / 1e6 - start_s for m in peer.named("LANDING_TARGET")]
+        assert len(stamps) >= 5
+        assert all(abs(stamp - round(stamp, 1)) < 0.001 for stamp in stamps)
+
+
 def test_a_camera_behind_a_rover_needs_a_parameter_and_it_is_said() -> None:
     with output(f"udpin:127.0.0.1:{free_port()}", mounting=BEHIND) as out:
         assert len(out.told) == 1 and "PLND_ORIENT 4" in out.told[0]

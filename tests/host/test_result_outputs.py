@@ -18,7 +18,8 @@ import pytest
 
 from chromadock import Detection
 from chromadock.errors import ChromadockError
-from chromadock.output import Guarded, ResultOutput, open_output
+from chromadock.output import Guarded, ResultOutput, Surroundings
+from chromadock.output import open_output as open_named
 from chromadock.results.detection import Background, Marker
 from chromadock.sources import Frame
 
@@ -26,6 +27,10 @@ FRAME = Frame(np.zeros((4, 4, 3), np.uint8), "camera 0", 7, 1.25)
 RESULT = Detection(
     "not_found", Background((10, 100, 90), 170.0, 0.8), Marker(None, None), None, 0.0
 )
+
+
+def open_output(text: str) -> ResultOutput:
+    return open_named(text, Surroundings(None, print))
 
 
 class Moody(ResultOutput):
@@ -87,8 +92,7 @@ def test_a_limit_in_the_middle_of_a_line_leaves_the_lines_before(tmp_path: Path)
     path = tmp_path / "dive.jsonl"
     program = f"""
 import resource, signal
-from test_result_outputs import FRAME, RESULT
-from chromadock.output import open_output
+from test_result_outputs import FRAME, RESULT, open_output
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 with open_output("json:{path}") as output:
@@ -140,6 +144,7 @@ def test_nobody_who_listens_is_no_fault() -> None:
         ("json:no/such/folder.jsonl", "no such folder: create it first"),
         ("json:/", "cannot be written"),
         ("udp:9000", "give udp:HOST:PORT"),
+        ("mavlink:udpin:0.0.0.0:14550", "no receiver: add ?receiver="),
         ("udp:host:99999", "give udp:HOST:PORT"),
         ("udp:no.such.host.invalid:9000", "no such host"),
     ],

@@ -53,6 +53,7 @@ def set_up_tests() -> None:
     environment.install_test_tools()
     environment.install_opencv4()
     environment.install_mavproxy()
+    environment.install_mavsdk(unavailable)
     debian.install_test_packages(unavailable)
     native_tests.set_up(unavailable)
     unavailable.save()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from commands import run
 from paths import BUILD, CONSTRAINTS, ROOT, TOOLS, VENV, VENV_PYTHON
-from report import step
+from report import SetupError, Unavailable, step
 from stamps import Stamp
 
 HOST = ROOT / "host"
@@ -16,6 +16,7 @@ BINDING = ROOT / "firmware" / "bindings"
 DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
 OPENCV4 = BUILD / "opencv4"
 MAVPROXY = BUILD / "mavproxy"
+MAVSDK = BUILD / "mavsdk"
 PEERS = BUILD / "bench"
 DIALECT = HOST / "chromadock" / "dialect.py"
 NATIVE = [HOST / "native", HOST / "build_native.py"]
@@ -86,6 +87,15 @@ def install_opencv4() -> None:
 def install_mavproxy() -> None:
     """Put MAVProxy beside the environment, for the tests of the link with real clients."""
     install_beside(MAVPROXY, "MAVProxy")
+
+
+def install_mavsdk(unavailable: Unavailable) -> None:
+    """Put MAVSDK beside the environment, for the tests of what an autopilot is told; there is not
+    a wheel of it for every computer."""
+    try:
+        install_beside(MAVSDK, "MAVSDK")
+    except SetupError as error:
+        unavailable.add("mavsdk", str(error))
 
 
 def install_peers() -> None:

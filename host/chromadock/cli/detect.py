@@ -78,10 +78,15 @@ def detect(
         list[str] | None,
         typer.Option(
             metavar="KIND:PLACE",
-            help="Where else each result goes, as often as you like: json:FILE, udp:HOST:PORT.",
+            help="Where else each result goes, as often as you like: json:FILE, udp:HOST:PORT, "
+            "mavlink:ADDRESS?receiver=NAME.",
             show_default=False,
         ),
     ] = None,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Send an autopilot nothing: say what it would understand."),
+    ] = False,
     overlay: Annotated[
         Path | None,
         typer.Option(help="Draw what was seen into a folder or a .mp4.", show_default=False),
@@ -108,6 +113,7 @@ def detect(
     from chromadock.detector import Detector
     from chromadock.dock import DockGeometry
     from chromadock.marker_colour import MarkerColour
+    from chromadock.output import Surroundings
     from chromadock.sources import open_source
 
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock, yes)
@@ -124,4 +130,7 @@ def detect(
     )
     report = Report(json=json, calibrated=model is not None)
     frames = open_source(source, fps, report.fault, report.notice, delay)
-    raise typer.Exit(detect_frames(frames, detector, model, geometry, overlay, out or [], report))
+    around = Surroundings(None, report.notice, dry_run)
+    raise typer.Exit(
+        detect_frames(frames, detector, model, geometry, overlay, out or [], around, report)
+    )

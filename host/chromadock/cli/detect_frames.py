@@ -12,10 +12,18 @@ from chromadock.cli.report import Report
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
-from chromadock.output import Guarded, OverlayOutput, ResultOutput, open_output, open_overlay
+from chromadock.output import (
+    Guarded,
+    OverlayOutput,
+    ResultOutput,
+    Surroundings,
+    open_output,
+    open_overlay,
+)
 from chromadock.overlay import draw_overlay
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame, Source
+from chromadock.track.attitude import Attitude
 
 
 def detect_frames(
@@ -25,6 +33,7 @@ def detect_frames(
     geometry: DockGeometry,
     overlay: Path | None,
     outputs: Sequence[str],
+    around: Surroundings,
     report: Report,
 ) -> int:
     """Look for the dock in all ``frames``, tell ``report`` and the ``outputs``, close them all; the
@@ -36,7 +45,7 @@ def detect_frames(
             _check_apart(overlay, frames)
             pictures = stack.enter_context(open_overlay(overlay, frames.count, frames.fps))
         results = [
-            stack.enter_context(Guarded(open_output(text), report.notice)) for text in outputs
+            stack.enter_context(Guarded(open_output(text, around), around.tell)) for text in outputs
         ]
         stack.enter_context(report.progress(frames.count))
         interrupted = _run(frames, detector, model, geometry, pictures, results, report)
@@ -64,9 +73,11 @@ def _run(
     """Frame after frame; True where Ctrl-C ended a live source, which is its only end."""
     try:
         for frame in frames:
-            detection = _one(frame, detector, model, geometry, pictures)
-            now_s = frames.now()
-            age_s = None if now_s is None else now_s - frame.time_s
+            age_s = _age_s(frames, frame)
+            attitudes = (output.attitude(frame.time_s, age_s) for output in results)
+            attitude = next(filter(None, attitudes), None)
+            detection = _one(frame, attitude, detector, model, geometry, pictures)
+            age_s = _age_s(frames, frame)
             for output in results:
                 output.write(frame, detection, age_s)
             report.frame(frame, detection, age_s)
@@ -77,15 +88,22 @@ def _run(
     return False
 
 
+def _age_s(frames: Source, frame: Frame) -> float | None:
+    """How old a live source's picture is by now."""
+    now_s = frames.now()
+    return None if now_s is None else now_s - frame.time_s
+
+
 def _one(
     frame: Frame,
+    attitude: Attitude | None,
     detector: Detector,
     model: CameraModel | None,
     geometry: DockGeometry,
     pictures: OverlayOutput | None,
 ) -> Detection:
     try:
-        detection = detector.process(frame.image, frame.time_s)
+        detection = detector.process(frame.image, frame.time_s, attitude)
     except ChromadockError as error:
         raise ChromadockError(f"{frame.name}: {error}") from None
     if pictures is not None:

@@ -25,6 +25,10 @@ def run(
             help="Goes before a key of the file, e.g. camera.source=1; may be repeated.",
         ),
     ] = None,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Send an autopilot nothing: say what it would understand."),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
 ) -> None:
     """Find the dock in what the camera of VEHICLE.toml sees, and pass on where it is.
@@ -33,9 +37,10 @@ def run(
     """
     from chromadock.cli.detect_frames import detect_frames
     from chromadock.cli.report import Report
+    from chromadock.output import Surroundings
     from chromadock.sources import open_source
     from chromadock.toml_file import change
-    from chromadock.vehicle.building import camera_of, detector_of, dock_of
+    from chromadock.vehicle.building import camera_of, detector_of, dock_of, mounting_of
     from chromadock.vehicle.reading import read_vehicle
 
     changes = dict(change(text, "camera.source=1") for text in set_ or [])
@@ -51,4 +56,7 @@ def run(
     )
     overlay = Path(settings.outputs.overlay) if settings.outputs.overlay else None
     outputs = settings.outputs.results
-    raise typer.Exit(detect_frames(frames, detector, camera, dock, overlay, outputs, report))
+    around = Surroundings(mounting_of(settings.mounting), report.notice, dry_run)
+    raise typer.Exit(
+        detect_frames(frames, detector, camera, dock, overlay, outputs, around, report)
+    )

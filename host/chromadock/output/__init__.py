@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from chromadock.output.addresses import open_output
+from chromadock.output.addresses import Surroundings, open_output
 from chromadock.output.base import Output, OverlayOutput
 from chromadock.output.guarded import Guarded
 from chromadock.output.jsonlines import JsonLines, json_line
@@ -19,6 +19,7 @@ __all__ = [
     "PictureFile",
     "PictureFolder",
     "ResultOutput",
+    "Surroundings",
     "VideoOutput",
     "json_line",
     "open_output",

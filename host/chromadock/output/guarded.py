@@ -9,6 +9,7 @@ from chromadock.errors import ChromadockError
 from chromadock.output.results import ResultOutput
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame
+from chromadock.track.attitude import Attitude
 
 FIRST_RETRY_S = 0.5
 LONGEST_RETRY_S = 10.0
@@ -38,6 +39,10 @@ class Guarded(ResultOutput):
         self._wait_s = FIRST_RETRY_S
         self._lost = 0
         self._fault = ""
+
+    def attitude(self, time_s: float, age_s: float | None) -> Attitude | None:
+        """See ``ResultOutput``."""
+        return self._output.attitude(time_s, age_s)
 
     def write(self, frame: Frame, detection: Detection, age_s: float | None) -> None:
         """Pass a result on, or count it as lost."""

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame
+from chromadock.track.attitude import Attitude
 
 _Self = TypeVar("_Self", bound="ResultOutput")
 
@@ -17,6 +18,20 @@ class ResultOutput(ABC):
 
     A context manager that closes at the end.
     """
+
+    def attitude(self, time_s: float, age_s: float | None) -> Attitude | None:
+        """The vehicle's own attitude when a frame was taken, from whoever is at the other end.
+
+        Parameters
+        ----------
+        time_s : the frame's.
+        age_s : how old its picture is by now, seconds; None of a recording.
+
+        Returns
+        -------
+        None where nobody there tells it.
+        """
+        return None
 
     @abstractmethod
     def write(self, frame: Frame, detection: Detection, age_s: float | None) -> None:

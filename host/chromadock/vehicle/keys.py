@@ -95,7 +95,7 @@ class OutputKeys(_Table):
     results: Annotated[list[str], allowed("a list of texts in quotes")] = Field(
         [],
         description="Any number of KIND:PLACE: json:FILE appends to a log, udp:HOST:PORT sends "
-        "datagrams.",
+        "datagrams, mavlink:ADDRESS?receiver=NAME tells an autopilot (docs/autopilot.md).",
     )
     overlay: Text = Field(
         "", description="A video or folder into which is drawn what was seen. Empty: none."

@@ -15,9 +15,11 @@ from chromadock.choices import (
     MAPPINGS,
     METHODS,
 )
+from chromadock.errors import ChromadockError
 
 
 def detect(
+    context: typer.Context,
     source: Annotated[
         str,
         typer.Argument(
@@ -85,6 +87,7 @@ def detect(
     from chromadock.dock import DockGeometry
     from chromadock.marker_colour import MarkerColour
 
+    _check_one(context)
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock)
     model = None if camera is None else CameraModel.from_yaml(camera)
     colour = None if marker_colour is None else MarkerColour.parse(marker_colour, "--marker-colour")
@@ -99,3 +102,12 @@ def detect(
     )
     report = Report(json=json, calibrated=model is not None)
     raise typer.Exit(detect_frames(source, fps, detector, model, geometry, overlay, report))
+
+
+def _check_one(context: typer.Context) -> None:
+    """Of a pattern that is not quoted, the shell makes one argument for each file."""
+    if context.args:
+        raise ChromadockError(
+            f"{1 + len(context.args)} sources are given: give one; put a pattern into quotes "
+            "('*.png'), so that the shell leaves it alone, or give the folder"
+        )

@@ -27,7 +27,7 @@ def detect_frames(
 ) -> int:
     """Look for the dock in all frames of ``source``, tell ``report``; the exit status."""
     with ExitStack() as stack:
-        frames = stack.enter_context(open_source(source, fps, report.fault))
+        frames = stack.enter_context(open_source(source, fps, report.fault, report.note))
         pictures = None
         if overlay is not None:
             _check_apart(overlay, frames)

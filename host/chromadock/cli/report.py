@@ -117,6 +117,10 @@ class Report:
         """Tell of what could not be read."""
         self._aside(f"error: {line}")
 
+    def note(self, line: str) -> None:
+        """Tell of what had to be assumed."""
+        self._aside(f"warning: {line}")
+
     def summary(self, skipped: int) -> None:
         """The last line; ``skipped`` frames could not be read."""
         tracked = f"{self._tracked} tracked, " if self._tracked else ""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import av
 import numpy as np
 
 FPS = 20
+PIXELS = {"mjpeg": "yuvj420p", "ffv1": "bgr0"}
+"""What a codec stores, where that is not yuv420p."""
 SIZE = (96, 64)
 """Width and height."""
 
@@ -36,16 +39,25 @@ def write_clip(
     sound_s: float = 0.0,
     options: dict[str, str] | None = None,
     muxer: dict[str, str] | None = None,
+    shown: Callable[[int], np.ndarray] = picture,
+    pixels: str | None = None,
+    shift: int = 0,
 ) -> Path:
-    """Write the numbered pictures, each at ``number / FPS`` seconds, and as much sound."""
+    """Write the numbered pictures, each at ``number / FPS`` seconds, and as much sound.
+
+    With ``pixels`` of 16 bits the first channel alone, ``shift`` bits up.
+    """
     with av.open(str(path), "w", options=muxer or {}) as container:
         stream = container.add_stream(codec, rate=FPS, options=options or {})
         stream.width, stream.height = SIZE
         stream.bit_rate = 8_000_000  # so that every grey is what was written
-        stream.pix_fmt = "yuvj420p" if codec == "mjpeg" else "yuv420p"
+        stream.pix_fmt = pixels or PIXELS.get(codec, "yuv420p")
         sound = container.add_stream("pcm_s16le", rate=8000, layout="mono") if sound_s else None
         for number in numbers:
-            frame = av.VideoFrame.from_ndarray(picture(number), format="bgr24")
+            image = shown(number)
+            if pixels is not None:
+                image = image[:, :, 0].astype(np.uint16) << shift
+            frame = av.VideoFrame.from_ndarray(image, format=pixels or "bgr24")
             frame.pts = number
             container.mux(stream.encode(frame))
         container.mux(stream.encode(None))

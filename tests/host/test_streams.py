@@ -109,7 +109,9 @@ def test_a_web_camera_that_breaks_off_is_waited_for() -> None:
     server.pictures = 40  # type: ignore[attr-defined]
     threading.Thread(target=server.serve_forever, daemon=True).start()
     lines: list[str] = []
-    with open_source(f"http://127.0.0.1:{server.server_port}/video", tell=lines.append) as source:
+    with open_source(
+        f"http://127.0.0.1:{server.server_port}/video", on_note=lines.append
+    ) as source:
         frames = []
         for frame in source:
             frames.append(frame)

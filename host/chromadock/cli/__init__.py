@@ -42,7 +42,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # plain help: rich takes longer to load than all the rest
 )
-app.command("detect")(detect)
+# More sources than one have a better line than the parser's.
+app.command("detect", context_settings={"allow_extra_args": True})(detect)
 app.command("demo")(demo)
 app.command("evaluate")(evaluate)
 app.command("run")(run)

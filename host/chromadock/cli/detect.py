@@ -15,9 +15,11 @@ from chromadock.choices import (
     MAPPINGS,
     METHODS,
 )
+from chromadock.errors import ChromadockError
 
 
 def detect(
+    context: typer.Context,
     source: Annotated[
         str,
         typer.Argument(
@@ -116,6 +118,7 @@ def detect(
     from chromadock.output import Surroundings
     from chromadock.sources import open_source
 
+    _check_one(context)
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock, yes)
     model = None if camera is None else CameraModel.from_yaml(camera)
     colour = None if marker_colour is None else MarkerColour.parse(marker_colour, "--marker-colour")
@@ -129,8 +132,17 @@ def detect(
         fallback_hue_deg=fallback_hue,
     )
     report = Report(json=json, calibrated=model is not None)
-    frames = open_source(source, fps, report.fault, report.notice, delay)
+    frames = open_source(source, fps, report.fault, report.note, delay)
     around = Surroundings(None, report.notice, dry_run)
     raise typer.Exit(
         detect_frames(frames, detector, model, geometry, overlay, out or [], around, report)
     )
+
+
+def _check_one(context: typer.Context) -> None:
+    """Of a pattern that is not quoted, the shell makes one argument for each file."""
+    if context.args:
+        raise ChromadockError(
+            f"{1 + len(context.args)} sources are given: give one; put a pattern into quotes "
+            "('*.png'), so that the shell leaves it alone, or give the folder"
+        )

@@ -63,7 +63,7 @@ def inject(
     with connect(port, timeout, baud, log) as dock:
         try:
             for source in frames:
-                with open_source(source, on_fault=_tell) as opened:
+                with open_source(source, on_fault=_fault, on_note=_note) as opened:
                     for frame in opened:
                         status = dock.inject(to_rgb565(to_qqvga(frame.image)), WIDTH, HEIGHT)
                         print(f"{frame.name}: {line(status).strip()}", flush=True)
@@ -74,5 +74,9 @@ def inject(
         raise typer.Exit(EXIT_SKIPPED)
 
 
-def _tell(fault: str) -> None:
-    print(f"chromadock: error: {fault}", file=sys.stderr, flush=True)
+def _fault(line: str) -> None:
+    print(f"chromadock: error: {line}", file=sys.stderr, flush=True)
+
+
+def _note(line: str) -> None:
+    print(f"chromadock: warning: {line}", file=sys.stderr, flush=True)

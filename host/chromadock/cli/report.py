@@ -123,8 +123,12 @@ class Report:
         """Tell of what could not be read."""
         self._aside(f"error: {line}")
 
+    def note(self, line: str) -> None:
+        """Tell of what had to be assumed, or of a source that comes and goes."""
+        self.notice(f"warning: {line}")
+
     def notice(self, line: str) -> None:
-        """Tell of something that went wrong or right with a source, whichever thread it is."""
+        """Tell of anything else, whichever thread it is."""
         self._aside(line)
 
     def summary(self, skipped: int, dropped: int) -> None:

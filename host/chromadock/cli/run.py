@@ -51,7 +51,7 @@ def run(
     frames = open_source(
         settings.camera.source,
         on_fault=report.fault,
-        tell=report.notice,
+        on_note=report.note,
         delay_s=settings.camera.delay_s,
     )
     overlay = Path(settings.outputs.overlay) if settings.outputs.overlay else None

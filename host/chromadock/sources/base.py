@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from chromadock.choices import DEFAULT_FPS
 
 OnFault = Callable[[str], None]
-"""Takes one line about a picture that was skipped, or a video that ends too early."""
+"""Takes one line about a picture that was skipped, or a video that ends too early; or about
+what had to be assumed."""
 
 
 def ignore(_line: str) -> None:

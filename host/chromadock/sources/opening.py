@@ -6,6 +6,7 @@ import glob
 import os
 import re
 import stat
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from chromadock.errors import ChromadockError
 from chromadock.sources.address import without_secrets
 from chromadock.sources.base import OnFault, Source, ignore
 from chromadock.sources.device import open_device, open_gstreamer
+from chromadock.sources.kinds import check_readable
 from chromadock.sources.live import Live
 from chromadock.sources.order import natural_key
 from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture
@@ -27,7 +29,7 @@ def open_source(
     text: str,
     fps: float = DEFAULT_FPS,
     on_fault: OnFault = ignore,
-    tell: OnFault = ignore,
+    on_note: OnFault = ignore,
     delay_s: float = 0.0,
 ) -> Source:
     """Open what ``text`` names.
@@ -42,8 +44,9 @@ def open_source(
         Frames a second of a folder or glob of pictures.
     on_fault
         Called with one line for each picture that is skipped, and for a video's missing end.
-    tell
-        Called with one line when a live source goes away, and when it is back; by its thread.
+    on_note
+        Called with one line for what had to be assumed of the pictures, and when a live source
+        goes away or is back, then by its thread.
     delay_s
         From capture to arrival of a live source's pictures, seconds: see ``CaptureTime``.
 
@@ -61,40 +64,42 @@ def open_source(
         )
     if text.isascii() and text.isdigit():
         name = f"camera {text}"
-        return Live(partial(open_device, int(text), name), name, tell, delay_s)
+        return Live(partial(open_device, int(text), name), name, on_note, delay_s)
     path = Path(text)
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
-        live = _live(text, on_fault, tell, delay_s)
-        return live or _not_a_path(text, fps, on_fault, error)
+        live = _live(text, on_fault, on_note, delay_s)
+        return live or _not_a_path(text, fps, on_fault, on_note, error)
     if stat.S_ISDIR(mode):
-        return _folder(path, fps, on_fault)
+        return _folder(path, fps, on_fault, on_note)
     if stat.S_ISCHR(mode):
-        return Live(partial(open_device, text, text), text, tell, delay_s)
-    return _file(path, fps, on_fault)
+        return Live(partial(open_device, text, text), text, on_note, delay_s)
+    return _file(path, fps, on_fault, on_note)
 
 
-def _live(text: str, on_fault: OnFault, tell: OnFault, delay_s: float) -> Source | None:
+def _live(text: str, on_fault: OnFault, on_note: OnFault, delay_s: float) -> Source | None:
     """What is no path and delivers frames by itself."""
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
-        return open_url(text, on_fault, tell, delay_s)
+        return open_url(text, on_fault, on_note, delay_s)
     if "!" in text:
-        return Live(partial(open_gstreamer, text), "pipeline", tell, delay_s)
+        return Live(partial(open_gstreamer, text), "pipeline", on_note, delay_s)
     return None
 
 
-def _not_a_path(text: str, fps: float, on_fault: OnFault, error: Exception) -> Source:
+def _not_a_path(
+    text: str, fps: float, on_fault: OnFault, on_note: OnFault, error: Exception
+) -> Source:
     """Globs; anything else was meant as a path."""
     if glob.has_magic(text):
-        return _glob(text, fps, on_fault)
+        return _glob(text, fps, on_fault, on_note)
     shown = without_secrets(text)
     if isinstance(error, PermissionError):
         raise ChromadockError(f"{shown}: permission denied: allow reading it")
     raise ChromadockError(f"{shown}: no such file or folder: {_KINDS}")
 
 
-def _file(path: Path, fps: float, on_fault: OnFault) -> Source:
+def _file(path: Path, fps: float, on_fault: OnFault, on_note: OnFault) -> Source:
     try:
         with path.open("rb") as file:
             empty = not file.read(1)
@@ -105,33 +110,44 @@ def _file(path: Path, fps: float, on_fault: OnFault) -> Source:
     if empty:
         raise ChromadockError(f"{path}: the file is empty: copy it again")
     if is_picture(path):
-        return Pictures([path], [path.name], fps, on_fault, single=True)
-    return open_video(path, on_fault)
+        return Pictures([path], [path.name], fps, on_fault, on_note, single=True)
+    return open_video(path, on_fault, on_note)
 
 
-def _folder(path: Path, fps: float, on_fault: OnFault) -> Source:
+def _folder(path: Path, fps: float, on_fault: OnFault, on_note: OnFault) -> Source:
     try:
-        inside = [p for p in path.iterdir() if _is_visible_image(p)]
+        files = sorted(path.iterdir(), key=lambda p: natural_key(p.name))
     except OSError as error:
         raise ChromadockError(
             f"{path}: cannot read the folder ({error.strerror}): allow reading it"
         ) from None
-    inside.sort(key=lambda p: natural_key(p.name))
+    inside = [p for p in files if _is_visible_image(p)]
     if not inside:
+        _tell_kind(files)
         suffixes = " ".join(sorted(IMAGE_SUFFIXES))
         raise ChromadockError(f"{path}: no pictures in this folder: it needs some of {suffixes}")
-    return Pictures(inside, [p.name for p in inside], fps, on_fault)
+    return Pictures(inside, [p.name for p in inside], fps, on_fault, on_note)
 
 
-def _glob(pattern: str, fps: float, on_fault: OnFault) -> Source:
+def _glob(pattern: str, fps: float, on_fault: OnFault, on_note: OnFault) -> Source:
     found = [Path(p) for p in glob.glob(pattern, recursive=True)]  # noqa: PTH207 - absolute, too
-    found = [p for p in found if _is_visible_image(p)]
+    files, found = found, [p for p in found if _is_visible_image(p)]
     if not found:
+        _tell_kind(files)
         shown = without_secrets(pattern)
         raise ChromadockError(f"{shown}: no picture matches: check the pattern and the folder")
     found.sort(key=lambda p: natural_key(str(p)))
     above = os.path.commonpath([p.parent for p in found])
-    return Pictures(found, [os.path.relpath(p, above or ".") for p in found], fps, on_fault)
+    return Pictures(
+        found, [os.path.relpath(p, above or ".") for p in found], fps, on_fault, on_note
+    )
+
+
+def _tell_kind(files: list[Path]) -> None:
+    """Say so where pictures of a kind that cannot be read were meant."""
+    for file in files:
+        with suppress(OSError):
+            check_readable(file)
 
 
 def _is_visible_image(path: Path) -> bool:

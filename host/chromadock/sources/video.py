@@ -16,9 +16,12 @@ from numpy.typing import NDArray
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
-from chromadock.sources.base import Frame, OnFault, Source
+from chromadock.sources.base import Frame, OnFault, Source, ignore
 from chromadock.sources.container import missing_bytes, whole_boxes
 from chromadock.sources.decoding import Decoding, Lost
+from chromadock.sources.depth import Depth
+from chromadock.sources.kinds import check_readable
+from chromadock.sources.mosaic import check_no_mosaic
 from chromadock.text import plural
 
 _URL_TIMEOUT_S = 30.0
@@ -49,6 +52,8 @@ class Video(Source):
         Stands in messages.
     on_fault
         Called with one line for each fault.
+    on_note
+        Called with one line for what had to be assumed.
     missing
         How many bytes are announced beyond the file's end.
     """
@@ -60,6 +65,7 @@ class Video(Source):
         name: str,
         place: str,
         on_fault: OnFault,
+        on_note: OnFault = ignore,
         missing: int = 0,
     ) -> None:
         rate = stream.average_rate or stream.base_rate
@@ -70,6 +76,7 @@ class Video(Source):
         self._name = name
         self._place = place
         self._on_fault = on_fault
+        self._depth = Depth(on_note)
         self._missing = missing
         self._listed = sum(entry.size > 0 for entry in stream.index_entries)
 
@@ -87,7 +94,10 @@ class Video(Source):
                 lost = []
                 decoded += 1
                 shown = last
-                yield Frame(_bgr(item, converter), self._name, index, last)
+                image = self._image(item, converter)
+                if decoded == 1:
+                    check_no_mosaic(image, self._place)
+                yield Frame(image, self._name, index, last)
         if not decoded:
             raise self._nothing()
         if self._missing or decoding.broken_off:
@@ -95,6 +105,16 @@ class Video(Source):
         else:
             self._tell(lost)
             self._tell_gaps(decoding.packets)
+
+    def _image(self, frame: VideoFrame, converter: VideoReformatter) -> NDArray[np.uint8]:
+        """HxWx3 uint8 BGR, turned as the camera was held."""
+        if frame.format.name.startswith("gray16"):
+            image = self._depth.bgr(frame.to_ndarray().astype(np.uint16, copy=False), self._place)
+        else:
+            plain = converter.reformat(frame, format="bgr24", interpolation="BICUBIC")
+            image = np.asarray(plain.to_ndarray(), np.uint8)
+        turn = _TURNS.get(frame.rotation)
+        return image if turn is None else np.asarray(cv2.rotate(image, turn), np.uint8)
 
     def _time(self, pts: int | None, last_s: float, index: int) -> float:
         """Seconds from the stream's start; a frame's length after the last where none is told,
@@ -151,14 +171,16 @@ class Video(Source):
         self._container.close()
 
 
-def open_video(path: Path, on_fault: OnFault) -> Video:
+def open_video(path: Path, on_fault: OnFault, on_note: OnFault) -> Video:
     """Open a video file.
 
     Raises
     ------
     ChromadockError
-        Where it is no video, or so little of one that no frame can be read.
+        Where it is no video, so little of one that no frame can be read, or a picture of a kind
+        that cannot be.
     """
+    check_readable(path)
     missing = missing_bytes(path)
     container = None if _is_prose(path) else _open_file(path, missing)
     stream = None if container is None else _shown(container)
@@ -168,7 +190,7 @@ def open_video(path: Path, on_fault: OnFault) -> Video:
         raise ChromadockError(
             f"{path}: cannot be read as a video or picture: check that it is one, and whole"
         )
-    video = Video(container, stream, path.name, str(path), on_fault, missing)
+    video = Video(container, stream, path.name, str(path), on_fault, on_note, missing)
     video.places = frozenset([path])
     return video
 
@@ -239,14 +261,6 @@ def _expected(container: InputContainer, stream: VideoStream, fps: float) -> int
     else:
         return None
     return max(1, round(seconds * fps)) if seconds > 0 else None
-
-
-def _bgr(frame: VideoFrame, converter: VideoReformatter) -> NDArray[np.uint8]:
-    """HxWx3 uint8 BGR, turned as the camera was held."""
-    plain = converter.reformat(frame, format="bgr24", interpolation="BICUBIC")
-    image = np.asarray(plain.to_ndarray(), np.uint8)
-    turn = _TURNS.get(frame.rotation)
-    return image if turn is None else np.asarray(cv2.rotate(image, turn), np.uint8)
 
 
 def _is_prose(path: Path) -> bool:

@@ -19,6 +19,7 @@ from chromadock.cli.config import config
 from chromadock.cli.demo import demo
 from chromadock.cli.detect import detect
 from chromadock.cli.dock import dock
+from chromadock.cli.doctor import doctor
 from chromadock.cli.evaluate import evaluate
 from chromadock.cli.exit_status import (
     EXIT_BAD_INPUT,
@@ -45,6 +46,7 @@ app = typer.Typer(
 # More sources than one have a better line than the parser's.
 app.command("detect", context_settings={"allow_extra_args": True})(detect)
 app.command("demo")(demo)
+app.command("doctor")(doctor)
 app.command("evaluate")(evaluate)
 app.command("run")(run)
 app.command("simulate")(simulate)

@@ -6,6 +6,8 @@ import signal
 
 EXIT_SKIPPED = 1
 """Some frames could not be read; the others were used."""
+EXIT_FAULTS = 1
+"""What was looked at has a fault."""
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 128 + signal.SIGINT
 EXIT_TERMINATED = 128 + signal.SIGTERM

@@ -38,12 +38,27 @@ def read_vehicle(path: Path, changes: Mapping[str, Any] | None = None) -> Vehicl
         named = content.get(table, {}) if isinstance(content.get(table, {}), dict) else {}
         if isinstance(named.get(key), str) and named[key]:
             named[key] = str(path.parent / named[key])
-    for dotted, value in (changes or {}).items():
+    return _validated(str(path), content, changes or {})
+
+
+def settings_of(changes: Mapping[str, Any]) -> VehicleFile:
+    """The defaults, but for ``changes``; see ``read_vehicle``.
+
+    Raises
+    ------
+    ChromadockError
+        As there.
+    """
+    return _validated("--set", {}, changes)
+
+
+def _validated(name: str, content: dict[str, Any], changes: Mapping[str, Any]) -> VehicleFile:
+    for dotted, value in changes.items():
         _put(content, dotted, value)
     try:
         return VehicleFile.model_validate(content)
     except ValidationError as error:
-        raise one_line_error(str(path), error) from None
+        raise one_line_error(name, error) from None
 
 
 def _put(content: dict[str, Any], dotted: str, value: Any) -> None:

@@ -244,18 +244,12 @@ def projected(
     None where a marker is behind the camera.
     """
     arms = points_dock @ R.T
-    seen = arms + t
-    if (seen[:, 2] <= 0).any():
+    if arms[:, 2].min() <= -t[2]:
         return None
-    zero = np.zeros(3)
-    pixels, derivatives = cv2.projectPoints(seen, zero, zero, camera.matrix, camera.distortion)
-    by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(-1, 2, 3)
-    both = np.empty((len(arms), 2, 6))
-    both[..., :3] = by_place
-    # The arms' cross product with them, by components: np.cross takes several times as long.
-    (ax, ay, az), (x, y, z) = arms.T[..., None], by_place.transpose(2, 0, 1)
-    both[..., 3], both[..., 4], both[..., 5] = ay * z - az * y, az * x - ax * z, ax * y - ay * x
-    return np.asarray(pixels, np.float64).reshape(-1, 2), both
+    # From a rotation of zero OpenCV's derivatives by the rotation vector are by such turns.
+    pixels, derivatives = cv2.projectPoints(arms, np.zeros(3), t, camera.matrix, camera.distortion)
+    by_place_and_turn = derivatives.take([3, 4, 5, 0, 1, 2], axis=1)
+    return np.asarray(pixels, np.float64).reshape(-1, 2), by_place_and_turn.reshape(-1, 2, 6)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

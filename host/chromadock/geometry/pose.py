@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import cv2
@@ -195,7 +196,7 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
         return None
     for _ in range(_MAX_ROUNDS):
         information, gradient = now.jacobian.T @ now.jacobian, now.jacobian.T @ now.error
-        damped = information + damping * np.diag(np.diag(information) + 1e-12)
+        damped = information + np.diag(damping * (information.diagonal() + 1e-12))
         step = np.linalg.solve(damped, -gradient)
         after = _Fit.of(sighting, np.asarray(cv2.Rodrigues(step[3:])[0]) @ R, t + step[:3])
         if after is not None and after.chi_square <= now.chi_square:
@@ -210,11 +211,12 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
                 break
     else:
         return None
-    depths = (sighting.points_dock @ R.T + t)[:, 2] / np.ptp(sighting.points_dock, axis=0).max()
-    if not (depths.min() > _NEAREST and depths.max() < _FARTHEST):
+    depths = sighting.points_dock @ R[2] + t[2]
+    width = np.ptp(sighting.points_dock, axis=0).max()
+    if not (depths.min() > _NEAREST * width and depths.max() < _FARTHEST * width):
         return None
     off = now.error.reshape(-1, 2) * sighting.sigma_px[:, None]
-    reprojection_px = float(np.sqrt((off**2).sum(axis=1).mean()))
+    reprojection_px = math.sqrt((off**2).sum() / len(off))
     return Estimate(R, t, now.chi_square, reprojection_px, now.jacobian.T @ now.jacobian)
 
 
@@ -248,7 +250,7 @@ def projected(
         return None
     # From a rotation of zero OpenCV's derivatives by the rotation vector are by such turns.
     pixels, derivatives = cv2.projectPoints(arms, np.zeros(3), t, camera.matrix, camera.distortion)
-    by_place_and_turn = derivatives.take([3, 4, 5, 0, 1, 2], axis=1)
+    by_place_and_turn = np.asarray(derivatives, np.float64).take([3, 4, 5, 0, 1, 2], axis=1)
     return np.asarray(pixels, np.float64).reshape(-1, 2), by_place_and_turn.reshape(-1, 2, 6)
 
 

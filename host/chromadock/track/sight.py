@@ -50,7 +50,7 @@ class Sight:
         """
         points = dock.points[[dock.names.index(name) for name in markers]]
         best = poses[0]
-        if projected(points, best.R, best.t, camera) is None:
+        if (points @ best.R[2]).min() <= -best.t[2]:
             return None
         variance = np.square(sigma_px)
         widened = float(np.mean(1 / variance) / np.mean(1 / (variance + FLOOR_PX**2)))

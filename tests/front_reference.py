@@ -17,6 +17,7 @@ from chromadock.robust.frame.likeness import coefficients
 from chromadock.robust.frame.response import Response, linear
 
 MIN_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 112, 48
+NEIGHBOURHOOD = 0.18  # of the frame's mean side
 RING = np.array([(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)])
 
 
@@ -93,6 +94,7 @@ class Peak:
     likeness: float
     best: int
     looks: np.ndarray
+    inside: float
 
 
 def peaks_of(scales: list[Scale], response: Response) -> list[list[Peak]]:
@@ -160,19 +162,29 @@ def peak_of(
             missing / (adds + missing + 1),
         ]
     )
+    xy = (np.array([x, y]) + shift + 0.5) * cell - 0.5
     weights = response.weights[scale.best[y, x]].astype(np.float64)
     if scale.light[y, x].max() >= 0.8:
         weights = np.maximum(weights, 0)
     return Peak(
         k,
-        (np.array([x, y]) + shift + 0.5) * cell - 0.5,
+        xy,
         strength,
         max(added @ weights, 1e-6) / centre,
         chroma_of(added, response),
         likeness_of(looks, strength, k),
         int(scale.best[y, x]),
         looks,
+        inside_of(xy, response),
     )
+
+
+def inside_of(xy: np.ndarray, response: Response) -> float:
+    """Share of the square of a peak's neighbourhood that lies inside the frame, by a fine grid."""
+    size = response.layout.shapes[0][::-1] * response.layout.cells[0]
+    off = NEIGHBOURHOOD * np.sqrt(size.prod()) * (np.arange(2000) + 0.5 - 1000) / 1000
+    along = xy[:, None] + off
+    return float(((along > 0) & (along < size[:, None])).mean(axis=1).prod())
 
 
 def saddle_of(snr: np.ndarray, y: int, x: int, others: list[tuple[int, int]]) -> float:

@@ -73,6 +73,10 @@ class Lens(Protocol):
     def project(self, points: Real) -> tuple[Real, Real]:
         """(N, 3) points that it sees to (N, 2) pixels, and their (N, 2, 3) derivatives."""
 
+    def project_turned(self, arms: Real, t: Real) -> tuple[Real, Real]:
+        """Points at (N, 3) ``arms`` from ``t`` (3,) that it sees, and their (N, 2, 6) derivatives:
+        by ``t``, then by turns of the arms about the camera's axes, radians."""
+
     def rays(self, pixels: Real) -> Real:
         """(N, 2) pixels to (N, 3) unit rays; NaN where no ray comes to a pixel."""
 
@@ -136,6 +140,14 @@ class PinholeLens:
         pixels, derivatives = cv2.projectPoints(points, zero, zero, self.matrix, self.coefficients)
         by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(-1, 2, 3)
         return np.asarray(pixels, np.float64).reshape(-1, 2), by_place
+
+    def project_turned(self, arms: Real, t: Real) -> tuple[Real, Real]:
+        """See ``Lens``: from a rotation of zero OpenCV's derivatives by it are by such turns."""
+        pixels, derivatives = cv2.projectPoints(
+            arms, np.zeros(3), t, self.matrix, self.coefficients
+        )
+        by_place_and_turn = np.asarray(derivatives, np.float64).take([3, 4, 5, 0, 1, 2], axis=1)
+        return np.asarray(pixels, np.float64).reshape(-1, 2), by_place_and_turn.reshape(-1, 2, 6)
 
     def rays(self, pixels: Real) -> Real:
         """See ``Lens``."""
@@ -261,6 +273,12 @@ class EquidistantLens:
         derivatives[:, 0, 2], derivatives[:, 1, 2] = -slope * x / square, -slope * y / square
         focal, centre = self.matrix[[0, 1], [0, 1]], self.matrix[:2, 2]
         return place * focal + centre, derivatives * focal[:, None]
+
+    def project_turned(self, arms: Real, t: Real) -> tuple[Real, Real]:
+        """See ``Lens``."""
+        pixels, by_place = self.project(arms + t)
+        by_turn = np.cross(arms[:, None], by_place)
+        return pixels, np.concatenate([by_place, by_turn], axis=2)
 
     def rays(self, pixels: Real) -> Real:
         """See ``Lens``."""

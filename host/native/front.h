@@ -56,6 +56,11 @@
 #define FRONT_MAX_PEAKS 112
 #define FRONT_MAX_PROMISING 48
 
+/* Radius of the neighbourhood in which a peak's clutter is counted, of the
+ * frame's mean side: large enough for a few peaks, small enough to tell a
+ * surface's band from the water below. */
+#define FRONT_NEIGHBOURHOOD 0.18
+
 /* What is seen about a peak: its looks, all about 0 to 1, 0 if it is a lamp. */
 enum {
     /* One less four times determinant over squared trace of the Hessian: 0 for
@@ -124,6 +129,8 @@ typedef struct {
     double *chroma;     /* two angles off white, radians */
     double *looks;      /* FRONT_LOOKS for each peak */
     double *likeness;   /* log likelihood ratio of a lamp to clutter */
+    double *inside;     /* share of the square about it, as wide as the
+                         * neighbourhood, that lies inside the frame */
     uint8_t *best;      /* the filter that answers most */
     uint8_t *promising; /* 1 if the peak is to be searched for markers */
 } front_peaks_t;

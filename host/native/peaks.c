@@ -318,6 +318,22 @@ static void choose_promising(const double *snr, const double *likeness, int n,
     }
 }
 
+/* Of the span of a radius to both sides of a place, how much is in 0..size. */
+static double share_inside(double place, double radius, double size)
+{
+    const double seen = fmin(place + radius, size) - fmax(place - radius, 0.0);
+    return fmax(seen, 0.0) / (2 * radius);
+}
+
+static double inside_of(const front_layout_t *layout, const double xy[2])
+{
+    const double width = layout->width[0] * layout->cell[0];
+    const double height = layout->height[0] * layout->cell[0];
+    const double radius = FRONT_NEIGHBOURHOOD * sqrt(width * height);
+    return share_inside(xy[0], radius, width) *
+           share_inside(xy[1], radius, height);
+}
+
 static void describe(const front_frame_t *frame, const summit_t *summit,
                      front_peaks_t *peaks, int k)
 {
@@ -336,6 +352,7 @@ static void describe(const front_frame_t *frame, const summit_t *summit,
     double *looks = peaks->looks + k * FRONT_LOOKS;
     look_at(frame, summit, looks);
     measure_top(frame, summit, peaks->xy + 2 * k, &looks[FRONT_FLATNESS]);
+    peaks->inside[k] = inside_of(layout, peaks->xy + 2 * k);
     front_chroma(frame, exact, 1, peaks->chroma + 2 * k);
     peaks->snr[k] = (double)summit->strength;
     peaks->noise[k] = (double)(greater(excess, 1e-6F) / summit->centre);

@@ -11,11 +11,12 @@ typedef struct {
     frame_t frame;
     const search_dock_t *dock;
     double least;
+    double log_places; /* of the frame's places and of the base's turns */
     int32_t count;
     const int32_t *promising;
     double place_x[SEARCH_MAX_PROMISING], place_y[SEARCH_MAX_PROMISING];
     /* Bounds, whatever the other members of a set are: of a peak's rarity and
-     * likeness; of the sum of so many peaks'; of the log ratio that one peak's
+     * likeness; of the sum of so many peaks'; of the ratio that one peak's
      * (second's) colour is the other's; and of that with any other. */
     double rarity[SEARCH_MAX_PROMISING], rarest[SEARCH_MAX_PROMISING + 1];
     double colour[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
@@ -94,7 +95,7 @@ static void prepare_bounds(search_t *search)
         search->rarity[i] = peak_at(search, i)->likeness - usual +
                             most_rarity(frame, search->promising[i], markers);
         search->rarest[i + 1] = search->rarity[i];
-        search->nearest_colour[i] = 0;
+        search->nearest_colour[i] = 1;
     }
     search->rarest[0] = 0;
     qsort(search->rarest + 1, (size_t)search->count, sizeof(double),
@@ -107,7 +108,7 @@ static void prepare_bounds(search_t *search)
         for (int32_t i = 0; i < search->count; i++) {
             double same = same_colour(peak_at(search, i), peak);
             double ratio =
-                i == j ? 0 : log(evidence_colour_ratio(frame, same, clutter));
+                i == j ? 1 : evidence_colour_ratio(frame, same, clutter);
             search->colour[i][j] = ratio;
             search->nearest_colour[i] =
                 larger(search->nearest_colour[i], ratio);
@@ -135,17 +136,19 @@ static double hoped_looks(search_t *search, int32_t k,
 {
     int32_t others = search->dock->markers - k;
     search->weighed++;
-    double rarity = search->rarest[others], colour = -INFINITY;
+    double rarity = search->rarest[others], colour = 0;
     for (int32_t i = 0; i < k; i++) {
         const double *ratios = search->colour[search->set[i]];
-        double common = others * search->nearest_colour[search->set[i]];
+        double common = 1;
         for (int32_t j = 0; j < k; j++)
-            common += ratios[search->set[j]];
+            common *= ratios[search->set[j]];
+        for (int32_t j = 0; j < others; j++)
+            common *= search->nearest_colour[search->set[i]];
         colour = larger(colour, common);
         rarity += search->rarity[search->set[i]];
     }
     return evidence_log_alike(search->frame.constants, strengths) +
-           search->strengths_left[k] + rarity + colour;
+           search->strengths_left[k] + rarity + log(colour);
 }
 
 /* Keep the complete set with that log density of its places, if it is among
@@ -319,16 +322,18 @@ static void search_third(search_t *search, const view_t *base, int32_t span,
             /* The base is even in log length and normal in direction; each
              * marker's place is as much denser than its b as the base squared
              * is small. */
-            double turned = atan2(base->across, base->along) / dock->roll_rad;
-            place = -0.5 * square(turned) - dock->log_spread -
-                    log(search->frame.area) -
-                    (dock->markers - 1) * log(base->square);
+            place =
+                -search->log_places - (dock->markers - 1) * log(base->square);
             take(search, 0, search->set[0], 0, 0, &strengths);
             take(search, 1, base->peak, 1, 0, &strengths);
             take(search, 2, third, x, y, &strengths);
             looks = hoped_looks(search, 3, &strengths);
         }
         double there = place + dock->log_norm[class] - 0.5 * off;
+        if (there + looks < search->least)
+            continue;
+        double turned = atan2(base->across, base->along) / dock->roll_rad;
+        there -= 0.5 * square(turned);
         if (there + looks >= search->least)
             extend(search, 3, class, there, &strengths);
     }
@@ -383,6 +388,7 @@ int32_t search_find(const evidence_constants_t *constants,
     search.least = least;
     search.count = promising_count;
     search.promising = promising;
+    search.log_places = log(peaks->area) + dock->log_spread;
     search.weighed = 0;
     search.most_weighed = most_weighed;
     search.most_sets = most_sets;

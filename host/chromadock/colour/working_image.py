@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -39,27 +37,18 @@ def working_image(
     (60, 80, 3) uint8, same channel order, 0..255, rounded once, halves up.
     """
     height, width = pixels.shape[:2]
-    pixels = np.ascontiguousarray(pixels)
-    sums = np.empty((method.WORKING_HEIGHT, method.WORKING_WIDTH, 3), np.uint32)
-    lib.boxes_sum(
-        ffi.from_buffer("uint8_t[]", pixels),
-        *(height, width, method.WORKING_HEIGHT, method.WORKING_WIDTH),
+    means = np.empty((method.WORKING_HEIGHT, method.WORKING_WIDTH, 3), np.uint8)
+    lib.boxes_mean(
+        ffi.from_buffer("uint8_t[]", np.ascontiguousarray(pixels)),
+        *(height, width, *means.shape[:2]),
+        scale,
         ffi.from_buffer("uint16_t[]", np.empty(3 * width, np.uint16)),
-        ffi.from_buffer("uint32_t[]", sums),
+        ffi.from_buffer("uint32_t[]", np.empty(means[0].size, np.uint32)),
+        ffi.from_buffer("uint8_t[]", means),
     )
-    count = np.outer(_pixels(height, method.WORKING_HEIGHT), _pixels(width, method.WORKING_WIDTH))
-    full = np.asarray(scale, dtype=np.float64) * count[..., None]
-    # Exact: no quotient of integers below 2^53 rounds up to a whole number.
-    return np.asarray((510 * sums.astype(np.float64) + full) / (2 * full)).astype(np.uint8)
+    return means
 
 
 def smooth(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """3 x 3 binomial blur of the working image, edge pixels repeated outwards."""
     return np.asarray(cv2.GaussianBlur(image, (3, 3), 0, borderType=cv2.BORDER_REPLICATE), np.uint8)
-
-
-@cache
-def _pixels(size: int, cells: int) -> NDArray[np.intp]:
-    """(cells,) how many of ``size`` pixels each cell covers along one axis."""
-    edges = np.arange(cells + 1) * size // cells
-    return np.maximum(np.diff(edges), 1)

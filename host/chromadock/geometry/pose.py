@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -200,7 +201,7 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
         return None
     for _ in range(_MAX_ROUNDS):
         information, gradient = now.jacobian.T @ now.jacobian, now.jacobian.T @ now.error
-        damped = information + damping * np.diag(np.diag(information) + 1e-12)
+        damped = information + np.diag(damping * (information.diagonal() + 1e-12))
         step = np.linalg.solve(damped, -gradient)
         after = _Fit.of(sighting, np.asarray(cv2.Rodrigues(step[3:])[0]) @ R, t + step[:3])
         if after is not None and after.chi_square <= now.chi_square:
@@ -216,11 +217,11 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
     else:
         return None
     depths = sighting.camera.optics.depth(sighting.points_dock @ R.T + t)
-    depths = depths / np.ptp(sighting.points_dock, axis=0).max()
-    if not (depths.min() > _NEAREST and depths.max() < _FARTHEST):
+    width = np.ptp(sighting.points_dock, axis=0).max()
+    if not (depths.min() > _NEAREST * width and depths.max() < _FARTHEST * width):
         return None
     off = now.error.reshape(-1, 2) * sighting.sigma_px[:, None]
-    reprojection_px = float(np.sqrt((off**2).sum(axis=1).mean()))
+    reprojection_px = math.sqrt((off**2).sum() / len(off))
     return Estimate(R, t, now.chi_square, reprojection_px, now.jacobian.T @ now.jacobian)
 
 
@@ -250,16 +251,9 @@ def projected(
     None where a marker is out of the lens's view: of a pinhole behind the camera.
     """
     arms = points_dock @ R.T
-    seen = arms + t
-    if not camera.optics.sees(seen).all():
+    if not camera.optics.sees(arms + t).all():
         return None
-    pixels, by_place = camera.optics.project(seen)
-    both = np.empty((len(arms), 2, 6))
-    both[..., :3] = by_place
-    # The arms' cross product with them, by components: np.cross takes several times as long.
-    (ax, ay, az), (x, y, z) = arms.T[..., None], by_place.transpose(2, 0, 1)
-    both[..., 3], both[..., 4], both[..., 5] = ay * z - az * y, az * x - ax * z, ax * y - ay * x
-    return pixels, both
+    return camera.optics.project_turned(arms, t)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -88,12 +88,12 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
 def with_attitude(state: State, R_expected: Floats, covariance: Floats) -> Fused:
     """The dock's attitude R (3, 3), known to (3, 3) of small turns about the camera's axes."""
     off = turn_between(state.R, R_expected)
-    return _fused(state, np.eye(12)[ATTITUDE], off, covariance)
+    return _fused(state, ATTITUDE, off, covariance)
 
 
 def with_turn_rate(state: State, turn_rate: Floats, variance: float) -> Fused:
     """The camera's rate of turn (3,), rad/s, each number known to ``variance``."""
-    return _fused(state, np.eye(12)[RATE], turn_rate - state.turn_rate, variance * np.eye(3))
+    return _fused(state, RATE, turn_rate - state.turn_rate, variance * np.eye(3))
 
 
 def _errors(seen: Sighting, R: Floats, t: Floats) -> tuple[Floats, Floats] | None:
@@ -102,13 +102,13 @@ def _errors(seen: Sighting, R: Floats, t: Floats) -> tuple[Floats, Floats] | Non
     return errors if errors is not None and np.abs(errors[0]).max() < _RAN_AWAY else None
 
 
-def _fused(state: State, H: Floats, off: Floats, covariance: Floats) -> Fused:
-    """Kalman's update."""
+def _fused(state: State, part: slice, off: Floats, covariance: Floats) -> Fused:
+    """Kalman's update by a measurement of one part of the state."""
     P = state.covariance
-    spread = H @ P @ H.T + covariance
-    gain = np.linalg.solve(spread, H @ P).T
+    spread = P[part, part] + covariance
+    gain = np.linalg.solve(spread, P[part]).T
     chi_square = float(off @ np.linalg.solve(spread, off))
     log_likelihood = -0.5 * chi_square - 0.5 * float(np.linalg.slogdet(spread)[1])
     return Fused(
-        state.corrected(gain @ off, P - gain @ H @ P), len(off), chi_square, log_likelihood
+        state.corrected(gain @ off, P - gain @ P[part]), len(off), chi_square, log_likelihood
     )

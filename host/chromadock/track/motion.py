@@ -8,6 +8,7 @@ along with its attitude, so what bearings tell of the turn holds for the attitud
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import cv2
@@ -48,6 +49,8 @@ POSE = slice(0, 6)
 ATTITUDE = slice(3, 6)
 RATE = slice(9, 12)
 """Parts of a state's errors."""
+
+_EYE = np.eye(3)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -111,12 +114,13 @@ class State:
         turned = rotation(-self.turn_rate * elapsed_s)
         t = turned @ (self.t + self.velocity * elapsed_s)
         velocity = turned @ self.velocity
+        of_turning = _of_turning(t, velocity)
         F = np.zeros((12, 12))
         F[:3, :3] = F[3:6, 3:6] = F[6:9, 6:9] = turned
-        F[9:, 9:] = np.eye(3)
         F[:3, 6:9] = turned * elapsed_s
-        F[:, 9:] += _of_turning(t, velocity) * elapsed_s
-        covariance = F @ self.covariance @ F.T + _noise(t, velocity, elapsed_s, swift)
+        F[:, 9:] = of_turning * elapsed_s
+        F[9:, 9:] = _EYE
+        covariance = F @ self.covariance @ F.T + _noise(of_turning, elapsed_s, swift)
         return State(turned @ self.R, t, velocity, self.turn_rate, (covariance + covariance.T) / 2)
 
 
@@ -139,34 +143,34 @@ def turn_between(R_from: Floats, R_to: Floats) -> Floats:
 
 def cross_matrix(v: Floats) -> Floats:
     """(3, 3) with ``cross_matrix(v) @ w = v x w``."""
-    x, y, z = v
+    x, y, z = v.tolist()
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _of_turning(t: Floats, velocity: Floats) -> Floats:
     """(12, 3) what a turn of the camera does to t, the dock's attitude and velocity."""
-    return np.vstack([cross_matrix(t), -np.eye(3), cross_matrix(velocity), np.zeros((3, 3))])
+    return np.concatenate([cross_matrix(t), -_EYE, cross_matrix(velocity), np.zeros((3, 3))])
 
 
 def acceleration_of(swift: float) -> float:
     """m/s^2 per root Hz, of a vehicle that manoeuvres with probability ``swift``."""
-    return float(np.sqrt((1 - swift) * ACCELERATION**2 + swift * SWIFT_ACCELERATION**2))
+    return math.sqrt((1 - swift) * ACCELERATION**2 + swift * SWIFT_ACCELERATION**2)
 
 
 def turning_of(swift: float) -> float:
     """rad/s^2 per root Hz, of a vehicle that manoeuvres with probability ``swift``."""
-    return float(np.sqrt((1 - swift) * TURNING**2 + swift * SWIFT_TURNING**2))
+    return math.sqrt((1 - swift) * TURNING**2 + swift * SWIFT_TURNING**2)
 
 
-def _noise(t: Floats, velocity: Floats, elapsed_s: float, swift: float) -> Floats:
+def _noise(of_turning: Floats, elapsed_s: float, swift: float) -> Floats:
     """(12, 12) what accelerations add meanwhile: integral of G(s) G(s)^T, G(s) = s A + B."""
     A, B = np.zeros((12, 6)), np.zeros((12, 6))
     acceleration, turning = acceleration_of(swift), turning_of(swift)
-    A[:3, :3] = B[6:9, :3] = acceleration * np.eye(3)
-    A[:, 3:] = turning * _of_turning(t, velocity)
-    B[9:, 3:] = turning * np.eye(3)
+    A[:3, :3] = B[6:9, :3] = acceleration * _EYE
+    A[:, 3:] = turning * of_turning
+    B[9:, 3:] = turning * _EYE
     mixed = A @ B.T
     noise = A @ A.T * (elapsed_s**3 / 3) + (mixed + mixed.T) * (elapsed_s**2 / 2)
     noise += B @ B.T * elapsed_s
-    noise[3:6, 3:6] += DOCK_TURNING**2 * elapsed_s * np.eye(3)
+    noise[3:6, 3:6] += DOCK_TURNING**2 * elapsed_s * _EYE
     return np.asarray(noise)

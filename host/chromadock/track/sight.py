@@ -50,7 +50,7 @@ class Sight:
         """
         points = dock.points[[dock.names.index(name) for name in markers]]
         best = poses[0]
-        if projected(points, best.R, best.t, camera) is None:
+        if not camera.optics.sees(points @ best.R.T + best.t).all():
             return None
         variance = np.square(sigma_px)
         widened = float(np.mean(1 / variance) / np.mean(1 / (variance + FLOOR_PX**2)))

@@ -68,6 +68,7 @@ class Tracker:
         self._dock = replace(dock, points=dock.points - dock.centre)
         self._told = mounting
         self._mounting = mounting_or_default(mounting)
+        self._expected_level = expected(None, self._mounting)
         self._memory = Memory()
 
     def plan(self, time_s: float, attitude: Attitude | None = None) -> Plan:
@@ -138,7 +139,9 @@ class Tracker:
         # An attitude that is not new is some tenths of a second old, and says nothing new.
         faced = telemetry.fresh is not None or telemetry.silent(time_s)
         share = min(1.0, (time_s - memory.faced_s) / FACING_CORRELATION_S)
-        R, covariance = expected(telemetry.fresh, self._mounting)
+        R, covariance = self._expected_level
+        if telemetry.fresh is not None:
+            R, covariance = expected(telemetry.fresh, self._mounting)
 
         def predicted(swift: float) -> Bank:
             bank, turn = locked.bank, telemetry.turn

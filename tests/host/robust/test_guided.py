@@ -1,15 +1,19 @@
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 import pytest
+from search_reference import log_looks, log_normal
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.geometry.many import rotations
-from chromadock.geometry.pose import Estimate, Sighting, estimates
-from chromadock.robust.find.guided import Expectation, Guess
+from chromadock.geometry.pose import Estimate, Sighting, estimates, projected
+from chromadock.robust.find.guided import HIDDEN, Expectation, Guess
 from chromadock.robust.frame.peaks import Peaks
+from chromadock.robust.weigh.evidence import placed_along
 
 CAMERA = CameraModel.nominal(640, 480)
 POINTS = DockGeometry.default().points
@@ -31,8 +35,51 @@ def peaks(*, shown: list[int], specks: int, seed: int = 0) -> Peaks:
     )
 
 
+def expectation(points: np.ndarray, prior: Estimate) -> Expectation:
+    return Expectation(points, placed_along(points), prior, CAMERA)
+
+
 def guided(points: np.ndarray, prior: Estimate, peaks: Peaks, sigma_px: float) -> Guess | None:
-    return Expectation(points, prior, CAMERA).guess(peaks, sigma_px)
+    return expectation(points, prior).guess(peaks, sigma_px)
+
+
+def plainly(prior: Estimate, peaks: Peaks, sigma_px: float) -> dict[tuple[int, ...], float]:
+    """Evidence of all ways to take peaks for all markers, or for all but one (-1)."""
+    seen = projected(POINTS, prior.R, prior.t, CAMERA)
+    assert seen is not None
+    places, jacobian = seen[0], seen[1].reshape(-1, 6)
+    covariance = jacobian @ np.linalg.inv(prior.information) @ jacobian.T
+    covariance += sigma_px**2 * np.eye(len(covariance))
+    z, along = peaks.xy @ [1, 1j], placed_along(POINTS)
+    evidence = {}
+    for members in permutations(range(-1, len(z)), len(places)):
+        markers = [m for m, member in enumerate(members) if member >= 0]
+        taken = tuple(members[m] for m in markers)
+        rows = np.ravel([(2 * m, 2 * m + 1) for m in markers])
+        off = (peaks.xy[list(taken)] - places[markers]).ravel()
+        evidence[members] = (
+            math.log(1 - HIDDEN if len(markers) == len(places) else HIDDEN)
+            + log_normal(off, covariance[np.ix_(rows, rows)])
+            + log_looks(z, peaks, 640.0 * 480.0, taken, along[markers])
+        )
+    return evidence
+
+
+@pytest.mark.parametrize(
+    ("shown", "seed"), [([0, 1, 2, 3], 1), ([0, 1, 2], 2), ([1, 2, 3], 3), ([0, 2, 3], 4)]
+)
+def test_the_best_set_is_that_of_the_plain_way(shown: list[int], seed: int) -> None:
+    seen = peaks(shown=shown, specks=2, seed=seed)
+    rng = np.random.default_rng(seed)
+    likeness, chroma = rng.normal(0, 1, len(seen.snr)), rng.normal(0, 0.2, (len(seen.snr), 2))
+    seen = replace(seen, likeness=likeness, chroma=chroma)
+    evidence = plainly(PRIOR, seen, 1.5)
+    best = max(evidence, key=lambda members: evidence[members])
+    guess = guided(POINTS, PRIOR, seen, 1.5)
+    assert guess is not None
+    assert guess.markers.tolist() == [m for m in range(4) if best[m] >= 0]
+    assert guess.members.tolist() == [member for member in best if member >= 0]
+    assert guess.evidence == pytest.approx(evidence[best], abs=1e-3)
 
 
 def test_all_markers_are_taken_where_the_pose_expects_them() -> None:
@@ -124,15 +171,15 @@ def test_both_poses_of_a_plane_expect_the_markers_at_the_same_places() -> None:
     [turned] = rotations(np.array([[0.0, 0.35, 0.0]]))
     far = CAMERA.project(POINTS @ turned.T + np.array([0.1, 0.0, 6.0]))
     sighting = Sighting(POINTS, far, np.full(4, 0.3), CAMERA)
-    first, second = (Expectation(POINTS, pose, CAMERA) for pose in estimates(sighting))
+    first, second = (expectation(POINTS, pose) for pose in estimates(sighting))
     assert first.like(second)
     aside = replace(PRIOR, t=PRIOR.t + np.array([0.1, 0.0, 0.0]))
-    assert not Expectation(POINTS, aside, CAMERA).like(Expectation(POINTS, PRIOR, CAMERA))
+    assert not expectation(POINTS, aside).like(expectation(POINTS, PRIOR))
 
 
 def test_the_spacing_is_that_of_the_closest_markers() -> None:
     pixels = CAMERA.project(POINTS @ R.T + PRIOR.t)
     apart = [np.linalg.norm(a - b) for k, a in enumerate(pixels) for b in pixels[:k]]
-    assert Expectation(POINTS, PRIOR, CAMERA).spacing_px == pytest.approx(min(apart))
+    assert expectation(POINTS, PRIOR).spacing_px == pytest.approx(min(apart))
     behind = replace(PRIOR, t=-PRIOR.t)
-    assert Expectation(POINTS, behind, CAMERA).spacing_px == 0.0
+    assert expectation(POINTS, behind).spacing_px == 0.0

@@ -87,7 +87,8 @@ class Measure:
         guesses: list[tuple[Guess, int, Peaks]] = []
         expectations: list[Expectation] = []
         for prior in priors:
-            expectation = Expectation(self.view.points, prior, self.view.camera)
+            view = self.view
+            expectation = Expectation(view.points, view.along, prior, view.camera)
             # The two poses of a plane differ in what they are, not in where the markers are.
             if any(expectation.like(other) for other in expectations):
                 continue

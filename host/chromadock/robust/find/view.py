@@ -104,6 +104,8 @@ class View:
 
         ``upright``: a unit complex number that turns the picture to where the dock stands upright.
         """
+        if len(peaks.promising) < len(self.points):
+            return []
         if cell not in self._searches:
             finest = cell == finest_cell(self.camera.width, self.camera.height)
             apart_px = cell * (FINEST_SPACING_CELLS if finest else MIN_SPACING_CELLS)

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import statistics
+
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -48,25 +52,26 @@ def stops_over(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> float:
     apart = np.linalg.norm(xy[:, None] - xy, axis=2)
     np.fill_diagonal(apart, 2 * LARGEST_ROOM_PX)
     room = np.minimum(apart.min(axis=1) / 2, LARGEST_ROOM_PX)
-    lamps = zip(xy[clipped], room[clipped], strict=True)
-    return float(np.median([_stops_of(frame_bgr, place, float(half)) for place, half in lamps]))
+    lamps = zip(*xy[clipped].T.tolist(), room[clipped].tolist(), strict=True)
+    return statistics.median(_stops_of(frame_bgr, x, y, half) for x, y, half in lamps)
 
 
-def _stops_of(frame_bgr: NDArray[np.uint8], place: NDArray[np.float64], half: float) -> float:
+def _stops_of(frame_bgr: NDArray[np.uint8], x: float, y: float, half: float) -> float:
     """The same of one lamp, in the square of ``half`` the side about it."""
     height, width = frame_bgr.shape[:2]
-    first = np.clip(np.floor(place - half), 0, [width - 1, height - 1]).astype(int)
-    end = np.ceil(place + half).astype(int) + 1
-    about = frame_bgr[first[1] : end[1], first[0] : end[0]].reshape(-1, 3)
-    plateau = np.count_nonzero(about >= CLIPPED, axis=0)
-    channel = int(plateau.argmax())
-    if plateau[channel] == 0:
+    left = min(max(math.floor(x - half), 0), width - 1)
+    top = min(max(math.floor(y - half), 0), height - 1)
+    about = cv2.split(frame_bgr[top : math.ceil(y + half) + 1, left : math.ceil(x + half) + 1])
+    plateaus = [np.count_nonzero(channel >= CLIPPED) for channel in about]
+    plateau = max(plateaus)
+    if plateau == 0:
         return 0.0
-    light = about[:, channel]
-    if light.min() >= CLIPPED:
+    light = about[plateaus.index(plateau)]
+    darkest = int(light.min())
+    if darkest >= CLIPPED:
         return MOST_STOPS  # nothing about it tells more
-    behind, full = (float(v / 255) ** GAMMA for v in (light.min(), CLIPPED))
+    behind, full = ((v / 255) ** GAMMA for v in (darkest, CLIPPED))
     halved = 255 * (behind + (full - behind) / 2) ** (1 / GAMMA)
-    inner, outer = np.sqrt([plateau[channel], np.count_nonzero(light >= halved)])
+    inner, outer = math.sqrt(plateau), math.sqrt(np.count_nonzero(light >= math.ceil(halved)))
     doublings = min(inner / max(outer - inner, inner / MOST_STOPS), MOST_STOPS)
-    return float(np.log2((behind + (full - behind) * 2**doublings) / full))
+    return math.log2((behind + (full - behind) * 2**doublings) / full)

@@ -20,9 +20,8 @@ MAX_PEAKS: int = lib.FRONT_MAX_PEAKS
 MAX_PROMISING: int = lib.FRONT_MAX_PROMISING
 """Of these so many are searched for markers."""
 
-NEIGHBOURHOOD = 0.18
-"""Radius of the neighbourhood in which a peak's clutter is counted, of the frame's mean side:
-large enough for a few peaks, small enough to tell a surface's band from the water below."""
+NEIGHBOURHOOD: float = lib.FRONT_NEIGHBOURHOOD
+"""Radius of the neighbourhood in which a peak's clutter is counted, of the frame's mean side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +52,12 @@ class Peaks:
 def find_peaks(response: Response) -> dict[int, Peaks]:
     """Local maxima that a lamp may have made, MAX_PEAKS at most of each scale; by its cells."""
     places = MAX_PEAKS * len(response.layout.cells)
-    xy, chroma, looks = (np.zeros((places, n)) for n in (2, 2, LOOKS))
-    snr, noise, likeness = np.empty((3, places))
+    xy, chroma, looks = (np.empty((places, n)) for n in (2, 2, LOOKS))
+    snr, noise, likeness, inside = np.empty((4, places))
     best, promising = np.empty((2, places), np.uint8)
-    arrays = xy, snr, noise, chroma, looks, likeness, best, promising
+    arrays = xy, snr, noise, chroma, looks, likeness, inside, best, promising
     native = ffi.new("front_peaks_t *", ([], *map(pointer, arrays)))
     lib.front_find(response.native, *map(pointer, coefficients()), native)
-    inside = _inside(xy, response)
     found = {}
     for scale, cell in enumerate(response.layout.cells):
         first = MAX_PEAKS * scale
@@ -76,12 +74,3 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
             looks[these],
         )
     return found
-
-
-def _inside(xy: NDArray[np.float64], response: Response) -> NDArray[np.float64]:
-    """(N,) share of the square about each place (N, 2) that lies inside the frame."""
-    rows, columns = response.layout.shapes[0].tolist()
-    size = np.array([columns, rows]) * response.layout.cells[0]
-    radius = NEIGHBOURHOOD * float(np.sqrt(size.prod()))
-    seen = np.minimum(xy + radius, size) - np.maximum(xy - radius, 0)
-    return np.asarray((np.maximum(seen, 0) / (2 * radius)).prod(axis=1))

@@ -225,8 +225,8 @@ def _shining(pixels: NDArray[np.uint8], weights: NDArray[np.float32]) -> NDArray
     """
     colour = linear(pixels)
     light = filtered(colour, weights)
-    if pixels.max(initial=0) >= CLIPPED:
-        clipped = (pixels >= CLIPPED).any(axis=2)
+    clipped = cv2.inRange(pixels, (0, 0, 0), 3 * (CLIPPED - 1,)) == 0
+    if clipped.any():
         light[clipped] = filtered(colour, np.maximum(weights, 0))[clipped]
     return light
 

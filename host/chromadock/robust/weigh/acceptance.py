@@ -97,9 +97,6 @@ def share_beyond(
     return float(weights @ (1 - within))
 
 
-_erf = np.vectorize(math.erf, otypes=[np.float64])
-
-
 def _normal(z: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Share of a normal distribution below z standard deviations."""
-    return np.asarray(0.5 + 0.5 * _erf(z / math.sqrt(2)))
+    """Share of a normal distribution below (M,) standard deviations."""
+    return 0.5 + 0.5 * np.array([math.erf(each) for each in (z / math.sqrt(2)).tolist()])

@@ -53,9 +53,9 @@ CONSTANTS = ffi.new(
 
 
 class NativePeaks:
-    """Peaks at ``z`` (N,), in a frame of so many square pixels, as C sees them."""
+    """Peaks at ``z`` (N,) x + iy or (N, 2), in a frame of so many square pixels, as C has them."""
 
-    def __init__(self, z: Complex, peaks: Peaks, area: float) -> None:
+    def __init__(self, z: Complex | Real, peaks: Peaks, area: float) -> None:
         count = len(peaks.snr)
         # Where there were more peaks than are kept, those from the weakest one on are known.
         least = float(peaks.snr[-1]) if count == MAX_PEAKS else MIN_SNR

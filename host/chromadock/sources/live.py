@@ -11,7 +11,8 @@ from chromadock.errors import ChromadockError
 from chromadock.sources.address import without_secrets
 from chromadock.sources.base import Frame, OnFault
 from chromadock.sources.capture import Capture, frame_count
-from chromadock.sources.video import Video, open_remote_video
+from chromadock.sources.video import Video
+from chromadock.sources.video_opening import open_remote_video
 
 
 class Live(Capture):

@@ -235,6 +235,15 @@ def test_an_mp4_that_was_cut_before_its_index_is_refused(tmp_path):
         read(clip)
 
 
+def test_a_recording_that_was_not_finished_is_told(tmp_path):
+    clip = write_clip(tmp_path / "clip.mp4", "mpeg4")
+    data = clip.read_bytes()
+    start = data.index(b"mdat") - 4
+    clip.write_bytes(data[:start] + bytes(4) + data[start + 4 : data.index(b"moov") - 4])
+    with pytest.raises(ChromadockError, match=r"not finished, so its index .* untrunc"):
+        read(clip)
+
+
 # --- what a video says of itself ---
 
 

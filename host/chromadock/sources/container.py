@@ -48,16 +48,25 @@ def whole_boxes(path: Path) -> int:
     with path.open("rb") as file:
         if file.read(8)[4:8] not in _MP4_FIRST:
             return 0
-        return max((end for end in _mp4_box_ends(file, size) if end <= size), default=0)
+        return max((end for _, end in _mp4_boxes(file, size) if end <= size), default=0)
+
+
+def lacks_index(path: Path) -> bool:
+    """True for an MP4 without a ``moov``, which recorders write last: one lost its power, say."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        if file.read(8)[4:8] not in _MP4_FIRST:
+            return False
+        return all(name != b"moov" for name, _ in _mp4_boxes(file, size))
 
 
 def _mp4_end(file: BinaryIO, size: int) -> int:
     """Where the last top level box ends."""
-    return max(_mp4_box_ends(file, size), default=0)
+    return max((end for _, end in _mp4_boxes(file, size)), default=0)
 
 
-def _mp4_box_ends(file: BinaryIO, size: int) -> Iterator[int]:
-    """Where the top level boxes end: each has 32 bits of size and 4 letters."""
+def _mp4_boxes(file: BinaryIO, size: int) -> Iterator[tuple[bytes, int]]:
+    """Names and ends of the top level boxes: each has 32 bits of size and 4 letters."""
     position = 0
     while position + 8 <= size:
         file.seek(position)
@@ -72,7 +81,7 @@ def _mp4_box_ends(file: BinaryIO, size: int) -> Iterator[int]:
         if length < 8:
             return
         position += length
-        yield position
+        yield head[4:8], position
 
 
 def _riff_end(file: BinaryIO, size: int) -> int:

@@ -78,10 +78,10 @@ class Decoding:
         try:
             frames = self._stream.decode(packet)
         except av.FFmpegError:
-            if stamp is None:
-                yield Lost(None)
-            else:
+            if stamp is not None:
                 self._failed.add(stamp)
+            elif packet is not None:
+                yield Lost(None)
             return
         for frame in frames:
             shown = frame.dts if frame.pts is None else frame.pts

@@ -20,7 +20,7 @@ from chromadock.sources.live import Live
 from chromadock.sources.order import natural_key
 from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture
 from chromadock.sources.urls import open_url
-from chromadock.sources.video import open_video
+from chromadock.sources.video_opening import open_video
 
 _KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
 

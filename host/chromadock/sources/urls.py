@@ -9,7 +9,7 @@ from chromadock.sources.address import without_secrets
 from chromadock.sources.base import OnFault, Source
 from chromadock.sources.live import Live
 from chromadock.sources.stream import open_stream
-from chromadock.sources.video import open_remote_video
+from chromadock.sources.video_opening import open_remote_video
 
 _SERVES_FILES = re.compile(r"(https?|ftps?|file):", re.IGNORECASE)
 

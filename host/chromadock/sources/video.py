@@ -1,9 +1,8 @@
-"""Video files, and URLs of such."""
+"""The frames of a video."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import av
 import cv2
@@ -17,14 +16,11 @@ from numpy.typing import NDArray
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
 from chromadock.sources.base import Frame, OnFault, Source, ignore
-from chromadock.sources.container import missing_bytes, whole_boxes
 from chromadock.sources.decoding import Decoding, Lost
 from chromadock.sources.depth import Depth
-from chromadock.sources.kinds import check_readable
 from chromadock.sources.mosaic import check_no_mosaic
 from chromadock.text import plural
 
-_URL_TIMEOUT_S = 30.0
 _TURNS = {
     90: cv2.ROTATE_90_COUNTERCLOCKWISE,
     -90: cv2.ROTATE_90_CLOCKWISE,
@@ -87,14 +83,14 @@ class Video(Source):
         decoded, last, shown = 0, -1.0, 0.0
         for index, item in enumerate(decoding):
             last = self._time(item.pts, last, index)
-            if isinstance(item, Lost):
+            image = None if isinstance(item, Lost) else self._image(item, converter)
+            if image is None:
                 lost.append((index, last))
             else:
                 self._tell(lost)
                 lost = []
                 decoded += 1
                 shown = last
-                image = self._image(item, converter)
                 if decoded == 1:
                     check_no_mosaic(image, self._place)
                 yield Frame(image, self._name, index, last)
@@ -106,12 +102,18 @@ class Video(Source):
             self._tell(lost)
             self._tell_gaps(decoding.packets)
 
-    def _image(self, frame: VideoFrame, converter: VideoReformatter) -> NDArray[np.uint8]:
-        """HxWx3 uint8 BGR, turned as the camera was held."""
+    def _image(self, frame: VideoFrame, converter: VideoReformatter) -> NDArray[np.uint8] | None:
+        """HxWx3 uint8 BGR, turned as the camera was held; None where it cannot be converted."""
         if frame.format.name.startswith("gray16"):
             image = self._depth.bgr(frame.to_ndarray().astype(np.uint16, copy=False), self._place)
         else:
-            plain = converter.reformat(frame, format="bgr24", interpolation="BICUBIC")
+            try:
+                # Threads of its own cost more than they bring.
+                plain = converter.reformat(
+                    frame, format="bgr24", interpolation="BICUBIC", threads=1
+                )
+            except av.FFmpegError:
+                return None
             image = np.asarray(plain.to_ndarray(), np.uint8)
         turn = _TURNS.get(frame.rotation)
         return image if turn is None else np.asarray(cv2.rotate(image, turn), np.uint8)
@@ -128,7 +130,7 @@ class Video(Source):
 
     def _nothing(self) -> ChromadockError:
         if self._missing:
-            return _nothing_left(self._place, self._missing)
+            return nothing_left(self._place, self._missing)
         return ChromadockError(
             f"{self._place}: no frame could be decoded: convert the video with ffmpeg"
         )
@@ -171,78 +173,8 @@ class Video(Source):
         self._container.close()
 
 
-def open_video(path: Path, on_fault: OnFault, on_note: OnFault) -> Video:
-    """Open a video file.
-
-    Raises
-    ------
-    ChromadockError
-        Where it is no video, so little of one that no frame can be read, or a picture of a kind
-        that cannot be.
-    """
-    check_readable(path)
-    missing = missing_bytes(path)
-    container = None if _is_prose(path) else _open_file(path, missing)
-    stream = None if container is None else _shown(container)
-    if container is None or stream is None:
-        if missing:  # an MP4 often has its index at its end
-            raise _nothing_left(str(path), missing)
-        raise ChromadockError(
-            f"{path}: cannot be read as a video or picture: check that it is one, and whole"
-        )
-    video = Video(container, stream, path.name, str(path), on_fault, on_note, missing)
-    video.places = frozenset([path])
-    return video
-
-
-def open_remote_video(url: str, name: str, on_fault: OnFault) -> Video:
-    """Open a video with an end behind a URL; messages have ``name`` in its place.
-
-    Raises
-    ------
-    ChromadockError
-        Where it does not open.
-    """
-    try:
-        container = _open(url, timeout=_URL_TIMEOUT_S)
-    except av.FFmpegError as error:
-        raise ChromadockError(
-            f"{name}: does not open ({error.strerror}): check the address, and that it answers"
-        ) from None
-    stream = _shown(container)
-    if stream is None:
-        raise ChromadockError(f"{name}: has no picture that can be decoded: check the address")
-    return Video(container, stream, name, name, on_fault)
-
-
-def _open_file(path: Path, missing: int) -> InputContainer | None:
-    # FFmpeg takes what stands before a colon for a protocol, but not in a whole path.
-    places = [str(path.absolute())]
-    if missing and (end := whole_boxes(path)):
-        places.append(f"subfile,,start,0,end,{end},,:{places[0]}")
-    for place in places:
-        try:
-            return _open(place)
-        except av.FFmpegError:
-            continue
-    return None
-
-
-def _open(place: str, timeout: float | None = None) -> InputContainer:
-    # Cameras write their makers' names in any encoding.
-    return av.open(place, "r", metadata_errors="replace", timeout=timeout)
-
-
-def _shown(container: InputContainer) -> VideoStream | None:
-    """The stream to look at; None, and the container closed, where none can be decoded."""
-    stream = container.streams.best("video")
-    if isinstance(stream, VideoStream) and stream.codec_context is not None:
-        return stream
-    container.close()
-    return None
-
-
-def _nothing_left(place: str, missing: int) -> ChromadockError:
+def nothing_left(place: str, missing: int) -> ChromadockError:
+    """The error for a video that was cut so short that it has no frame."""
     return ChromadockError(
         f"{place}: the video is cut short ({missing} bytes are missing), "
         "and nothing of what is left can be read: copy it again"
@@ -261,19 +193,3 @@ def _expected(container: InputContainer, stream: VideoStream, fps: float) -> int
     else:
         return None
     return max(1, round(seconds * fps)) if seconds > 0 else None
-
-
-def _is_prose(path: Path) -> bool:
-    """True for plain text, which FFmpeg would render as the film of a terminal; playlists
-    and stream descriptions are text as well, but lead to a video."""
-    with path.open("rb") as file:
-        head = file.read(4096)
-    if head.startswith((b"#EXTM3U", b"v=0")):
-        return False
-    try:
-        text = head.decode("utf-8")
-    except UnicodeDecodeError as error:
-        if error.start < len(head) - 4:  # else only the last letter is cut
-            return False
-        text = head[: error.start].decode("utf-8")
-    return all(letter.isprintable() or letter.isspace() for letter in text)

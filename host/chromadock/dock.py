@@ -80,7 +80,7 @@ class DockGeometry:
                 f"{self.source}: largest_range_m is {farthest:g}: give metres, more than 0"
             )
 
-    @property
+    @cached_property
     def centre(self) -> NDArray[np.float64]:
         """(3,) the markers' centroid, metres, dock frame: about it the pose is best known."""
         return np.asarray(self.points.mean(axis=0), np.float64)

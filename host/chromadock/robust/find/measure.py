@@ -239,8 +239,7 @@ def _again(
     their weights; the sighting with those errors."""
     order = np.argsort(-placed.weights, kind="stable").tolist()
     poses, weights = tuple(poses[k] for k in order), placed.weights[order]
-    as_before = np.allclose(placed.sigma_px, sighting.sigma_px, rtol=SAME_ERROR)
-    if as_before:
+    if (np.abs(placed.sigma_px / sighting.sigma_px - 1) <= SAME_ERROR).all():
         return poses, weights, sighting
     sighting = replace(sighting, sigma_px=placed.sigma_px)
     again = tuple(refined_pose(sighting, pose.R, pose.t) or pose for pose in poses)

@@ -77,6 +77,7 @@ class View:
         corners = ideal(np.array([(0, 0), (camera.width - 1.0, camera.height - 1.0)]), camera)
         across = corners[1] - corners[0]
         self.area = float(abs(across.real * across.imag))
+        self._usual_prior = self.prior(np.eye(3), np.diag(ATTITUDE_RAD**2))
         self._searches: dict[int, Search] = {}
 
     @cached_property
@@ -96,7 +97,7 @@ class View:
         """What is known of the dock's pose: its attitude as told, or that of an upright camera on
         its way in."""
         if R_expected is None or R_covariance is None:
-            R_expected, R_covariance = np.eye(3), np.diag(ATTITUDE_RAD**2)
+            return self._usual_prior
         return PosePrior(self.focal_px, self.area, LOG_RANGES, R_expected, R_covariance)
 
     def candidates(self, cell: int, peaks: Peaks, upright: complex) -> list[Candidate]:

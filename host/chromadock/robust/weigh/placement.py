@@ -9,6 +9,7 @@ less likely, and that is all.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -52,14 +53,18 @@ class PosePrior:
         """(3, 3): the inverse of the covariance."""
         return np.asarray(np.linalg.inv(self.R_covariance))
 
+    @cached_property
+    def _most(self) -> float:
+        """Log density of the expected attitude where a square pixel and e-folding of range have a
+        volume of 1 / f^2 behind them."""
+        place = 2 * math.log(self.focal_px) - math.log(self.area_px * self.log_ranges)
+        return place - 0.5 * float(np.linalg.slogdet(2 * np.pi * self.R_covariance)[1])
+
     def log_density(self, R: Real, t: Real, optics: Lens) -> float:
         """Of a pose before that lens, a cubic metre and cubic radian."""
-        # That volume over f^2 lies behind each square pixel and e-folding of range.
-        volume = float(optics.log_volume(t))
-        place = 2 * np.log(self.focal_px) - volume - np.log(self.area_px * self.log_ranges)
         turn = cv2.Rodrigues(R @ self.R_expected.T)[0].ravel()
-        norm = 0.5 * np.linalg.slogdet(2 * np.pi * self.R_covariance)[1]
-        return float(place - 0.5 * turn @ self.R_information @ turn - norm)
+        square = float(turn @ self.R_information @ turn)
+        return self._most - float(optics.log_volume(t)) - 0.5 * square
 
 
 @dataclass(frozen=True, eq=False, slots=True)

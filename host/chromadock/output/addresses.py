@@ -8,12 +8,22 @@ from pathlib import Path
 from chromadock.errors import ChromadockError
 from chromadock.output.lines import LinesFile, LinesUdp
 from chromadock.output.results import ResultOutput
+from chromadock.output.run_setup import RunSetup
+from chromadock.sources import ignore
 
-KINDS = "json:FILE, udp:HOST:PORT"
+Tell = Callable[[str], None]
+
+KINDS = "json:FILE, mcap:FILE, udp:HOST:PORT"
+RECORDING = "mcap"
 
 
-def open_output(text: str) -> ResultOutput:
+def open_output(text: str, setup: RunSetup | None = None, tell: Tell = ignore) -> ResultOutput:
     """Open what ``text`` names: ``KIND:PLACE``, see ``KINDS``.
+
+    Parameters
+    ----------
+    setup : what the run is set to, for a recording.
+    tell : takes one line where the output has another name than was asked for.
 
     Raises
     ------
@@ -21,7 +31,7 @@ def open_output(text: str) -> ResultOutput:
         One line, where there is no such kind or its place is none.
     """
     kind, place = check_output(text)
-    return _OPENERS[kind](place)
+    return _OPENERS[kind](place, setup, tell)
 
 
 def check_output(text: str) -> tuple[str, str]:
@@ -38,14 +48,28 @@ def check_output(text: str) -> tuple[str, str]:
     return kind, place
 
 
-def _lines_file(place: str) -> ResultOutput:
+def _in_folder(kind: str, place: str) -> Path:
     path = Path(place)
     if not path.resolve().parent.is_dir():
-        raise ChromadockError(f"--out json:{place}: no such folder: create it first")
-    return LinesFile(path)
+        raise ChromadockError(f"--out {kind}:{place}: no such folder: create it first")
+    return path
 
 
-def _lines_udp(place: str) -> ResultOutput:
+def _lines_file(place: str, _setup: RunSetup | None, _tell: Tell) -> ResultOutput:
+    return LinesFile(_in_folder("json", place))
+
+
+def _recording(place: str, setup: RunSetup | None, tell: Tell) -> ResultOutput:
+    path = _in_folder(RECORDING, place)
+    from chromadock.output.recording import Recording  # takes long to load
+
+    recording = Recording(path, setup)
+    if recording.path != path:
+        tell(f"{path} is there already: recording into {recording.path}")
+    return recording
+
+
+def _lines_udp(place: str, _setup: RunSetup | None, _tell: Tell) -> ResultOutput:
     host, _, port = place.rpartition(":")
     host = host.removeprefix("[").removesuffix("]")  # as IPv6 is written before a port
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
@@ -55,4 +79,8 @@ def _lines_udp(place: str) -> ResultOutput:
     return LinesUdp(host, int(port))
 
 
-_OPENERS: dict[str, Callable[[str], ResultOutput]] = {"json": _lines_file, "udp": _lines_udp}
+_OPENERS: dict[str, Callable[[str, RunSetup | None, Tell], ResultOutput]] = {
+    "json": _lines_file,
+    RECORDING: _recording,
+    "udp": _lines_udp,
+}

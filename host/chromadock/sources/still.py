@@ -6,6 +6,7 @@ says nothing.
 
 from __future__ import annotations
 
+import io
 import warnings
 from pathlib import Path
 
@@ -31,39 +32,48 @@ def read_still(path: Path) -> NDArray[np.uint8]:
     ChromadockError
         One line, where the file is missing, broken, too large or of floating point.
     """
+    return _decoded(path, str(path))
+
+
+def decode_still(data: bytes, name: str) -> NDArray[np.uint8]:
+    """The same of a picture file's content; messages have ``name`` in the file's place."""
+    return _decoded(io.BytesIO(data), name)
+
+
+def _decoded(file: Path | io.BytesIO, name: str) -> NDArray[np.uint8]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about harmless metadata; ours is one line
-            with Image.open(path) as opened:
+            with Image.open(file) as opened:
                 if opened.width * opened.height > MAX_PIXELS:
                     raise ChromadockError(
-                        f"{path}: {opened.width}x{opened.height} pixels are too many: "
+                        f"{name}: {opened.width}x{opened.height} pixels are too many: "
                         f"give frames of at most {MAX_PIXELS // 1_000_000} million"
                     )
                 opened.load()
-                rgb = _rgb(ImageOps.exif_transpose(opened), path)
+                rgb = _rgb(ImageOps.exif_transpose(opened), name)
     except (ChromadockError, MemoryError):
         raise
     except FileNotFoundError:
-        raise ChromadockError(f"{path}: no such file: check the name") from None
+        raise ChromadockError(f"{name}: no such file: check the name") from None
     except Exception as error:  # each of Pillow's decoders raises its own kinds
         raise ChromadockError(
-            f"{path}: not a whole picture ({_reason(error, path)}): copy it again or remove it"
+            f"{name}: not a whole picture ({_reason(error, name)}): copy it again or remove it"
         ) from None
     return np.ascontiguousarray(rgb[:, :, ::-1])
 
 
-def _rgb(image: Image.Image, path: Path) -> NDArray[np.uint8]:
+def _rgb(image: Image.Image, name: str) -> NDArray[np.uint8]:
     """HxWx3 uint8 RGB of any loaded Pillow image but floating point."""
     if image.mode == "F":
         raise ChromadockError(
-            f"{path}: floating point pixels are not supported: save it with 8 or 16 bits"
+            f"{name}: floating point pixels are not supported: save it with 8 or 16 bits"
         )
     if image.mode.startswith("I"):
         grey = np.asarray(image).astype(np.int64)
         if grey.size and (grey.min() < 0 or grey.max() > 0xFFFF):
             raise ChromadockError(
-                f"{path}: 32 bit pixels are not supported: save it with 8 or 16 bits"
+                f"{name}: 32 bit pixels are not supported: save it with 8 or 16 bits"
             )
         return np.repeat((grey >> 8).astype(np.uint8)[:, :, None], 3, axis=2)
     if image.mode == "P":
@@ -72,7 +82,7 @@ def _rgb(image: Image.Image, path: Path) -> NDArray[np.uint8]:
     return np.asarray(image.convert("RGB"))
 
 
-def _reason(error: Exception, path: Path) -> str:
+def _reason(error: Exception, name: str) -> str:
     """Pillow's words without the path, which our line already has."""
-    text = one_line(error).replace(repr(str(path)), "the file").replace(str(path), "the file")
+    text = one_line(error).replace(repr(name), "the file").replace(name, "the file")
     return text or type(error).__name__

@@ -13,6 +13,7 @@ from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
 from chromadock.output import Guarded, OverlayOutput, ResultOutput, open_output, open_overlay
+from chromadock.output.run_setup import RunSetup
 from chromadock.overlay import draw_overlay
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame, Source
@@ -25,10 +26,11 @@ def detect_frames(
     geometry: DockGeometry,
     overlay: Path | None,
     outputs: Sequence[str],
+    setup: RunSetup,
     report: Report,
 ) -> int:
     """Look for the dock in all ``frames``, tell ``report`` and the ``outputs``, close them all; the
-    exit status."""
+    exit status.  ``setup`` is what a recording keeps of the settings."""
     with ExitStack() as stack:
         stack.enter_context(frames)
         pictures = None
@@ -36,7 +38,8 @@ def detect_frames(
             _check_apart(overlay, frames)
             pictures = stack.enter_context(open_overlay(overlay, frames.count, frames.fps))
         results = [
-            stack.enter_context(Guarded(open_output(text), report.notice)) for text in outputs
+            stack.enter_context(Guarded(open_output(text, setup, report.notice), report.notice))
+            for text in outputs
         ]
         stack.enter_context(report.progress(frames.count))
         interrupted = _run(frames, detector, model, geometry, pictures, results, report)

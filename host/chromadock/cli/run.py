@@ -26,6 +26,14 @@ def run(
         ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIVE.mcap",
+            help="Goes before outputs.record: record frames, results and settings.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Find the dock in what the camera of VEHICLE.toml sees, and pass on where it is.
 
@@ -33,12 +41,15 @@ def run(
     """
     from chromadock.cli.detect_frames import detect_frames
     from chromadock.cli.report import Report
+    from chromadock.output.run_setup import RunSetup
     from chromadock.sources import open_source
     from chromadock.toml_file import change
-    from chromadock.vehicle.building import camera_of, detector_of, dock_of
+    from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
     from chromadock.vehicle.reading import read_vehicle
 
     changes = dict(change(text, "camera.source=1") for text in set_ or [])
+    if record is not None:
+        changes["outputs.record"] = str(record)
     settings = read_vehicle(vehicle, changes)
     camera, dock = camera_of(settings), dock_of(settings)
     detector = detector_of(settings, camera, dock)
@@ -50,5 +61,5 @@ def run(
         delay_s=settings.camera.delay_s,
     )
     overlay = Path(settings.outputs.overlay) if settings.outputs.overlay else None
-    outputs = settings.outputs.results
-    raise typer.Exit(detect_frames(frames, detector, camera, dock, overlay, outputs, report))
+    outputs, setup = outputs_of(settings), RunSetup(settings, camera)
+    raise typer.Exit(detect_frames(frames, detector, camera, dock, overlay, outputs, setup, report))

@@ -40,43 +40,44 @@ def check_output(text: str) -> tuple[str, str]:
     Raises
     ------
     ChromadockError
-        One line, where there is no such kind.
+        One line, where there is no such kind, no such folder, or no such form of an address.
     """
     kind, _, place = text.partition(":")
     if kind not in _OPENERS or not place:
         raise ChromadockError(f"--out {text}: no such output: give one of {KINDS}")
+    if kind == "udp":
+        _host_and_port(place)
+    elif not Path(place).resolve().parent.is_dir():
+        raise ChromadockError(f"--out {text}: no such folder: create it first")
     return kind, place
 
 
-def _in_folder(kind: str, place: str) -> Path:
-    path = Path(place)
-    if not path.resolve().parent.is_dir():
-        raise ChromadockError(f"--out {kind}:{place}: no such folder: create it first")
-    return path
-
-
-def _lines_file(place: str, _setup: RunSetup | None, _tell: Tell) -> ResultOutput:
-    return LinesFile(_in_folder("json", place))
-
-
-def _recording(place: str, setup: RunSetup | None, tell: Tell) -> ResultOutput:
-    path = _in_folder(RECORDING, place)
-    from chromadock.output.recording import Recording  # takes long to load
-
-    recording = Recording(path, setup)
-    if recording.path != path:
-        tell(f"{path} is there already: recording into {recording.path}")
-    return recording
-
-
-def _lines_udp(place: str, _setup: RunSetup | None, _tell: Tell) -> ResultOutput:
+def _host_and_port(place: str) -> tuple[str, int]:
     host, _, port = place.rpartition(":")
     host = host.removeprefix("[").removesuffix("]")  # as IPv6 is written before a port
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
         raise ChromadockError(
             f"--out udp:{place}: give udp:HOST:PORT, such as udp:192.168.2.1:9000"
         )
-    return LinesUdp(host, int(port))
+    return host, int(port)
+
+
+def _lines_file(place: str, _setup: RunSetup | None, _tell: Tell) -> ResultOutput:
+    return LinesFile(Path(place))
+
+
+def _lines_udp(place: str, _setup: RunSetup | None, _tell: Tell) -> ResultOutput:
+    return LinesUdp(*_host_and_port(place))
+
+
+def _recording(place: str, setup: RunSetup | None, tell: Tell) -> ResultOutput:
+    from chromadock.output.recording import Recording  # takes long to load
+
+    path = Path(place)
+    recording = Recording(path, setup)
+    if recording.path != path:
+        tell(f"{path} is there already: recording into {recording.path}")
+    return recording
 
 
 _OPENERS: dict[str, Callable[[str, RunSetup | None, Tell], ResultOutput]] = {

@@ -13,9 +13,10 @@ _TOPIC = "?topic="
 
 
 def split_topic(text: str) -> tuple[str, str | None]:
-    """``dive.mcap?topic=/camera/image`` as path and topic; None where none is given."""
+    """``dive.mcap?topic=/camera/image`` as path and topic; None where none is given, as in
+    addresses of video servers, which have topics of their own."""
     path, said, topic = text.partition(_TOPIC)
-    return (path, topic) if said and Path(path).exists() else (text, None)
+    return (path, topic) if said and "://" not in path else (text, None)
 
 
 def is_mcap(path: Path) -> bool:

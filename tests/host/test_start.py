@@ -13,7 +13,7 @@ from chromadock import choices, detector
 
 HEAVY = (
     *("numpy", "cv2", "PIL", "yaml", "rich", "matplotlib", "serial", "pymavlink", "cffi"),
-    *("jerlov", "dask", "distributed", "polars", "jinja2"),
+    *("jerlov", "dask", "distributed", "polars", "jinja2", "mcap", "rosbags"),
     *("chromadock._native", "chromadock.dialect", "chromadock.method_tables"),
     "chromadock_firmware",
 )

@@ -33,12 +33,12 @@ def init(path: _File) -> None:
 def check(path: _File) -> None:
     """Say what is wrong in the file, or in those that it names."""
     from chromadock.output.addresses import check_output
-    from chromadock.vehicle.building import camera_of, detector_of, dock_of
+    from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
     from chromadock.vehicle.reading import read_vehicle
 
     settings = read_vehicle(path)
     detector_of(settings, camera_of(settings), dock_of(settings))
-    for text in settings.outputs.results:
+    for text in outputs_of(settings):
         check_output(text)
     print(f"{path}: all keys are well")
 

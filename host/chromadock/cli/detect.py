@@ -25,7 +25,7 @@ def detect(
         typer.Argument(
             metavar="SOURCE",
             help="Camera index or device, video, picture, folder or glob of pictures, "
-            "GStreamer pipeline, or URL.",
+            "recording (MCAP, ROS bag), GStreamer pipeline, or URL.",
             show_default=False,
         ),
     ],
@@ -80,8 +80,16 @@ def detect(
         list[str] | None,
         typer.Option(
             metavar="KIND:PLACE",
-            help="Where else each result goes, as often as you like: json:FILE, udp:HOST:PORT, "
-            "mavlink:ADDRESS?receiver=NAME.",
+            help="Where else each result goes, as often as you like: json:FILE, mcap:FILE, "
+            "udp:HOST:PORT, mavlink:ADDRESS?receiver=NAME.",
+            show_default=False,
+        ),
+    ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIVE.mcap",
+            help="Record frames, results and settings, for `chromadock replay`: --out mcap:FILE.",
             show_default=False,
         ),
     ] = None,
@@ -116,7 +124,16 @@ def detect(
     from chromadock.dock import DockGeometry
     from chromadock.marker_colour import MarkerColour
     from chromadock.output import Surroundings
+    from chromadock.output.run_setup import RunSetup
     from chromadock.sources import open_source
+    from chromadock.vehicle.building import outputs_of
+    from chromadock.vehicle.keys import (
+        CameraKeys,
+        DetectorKeys,
+        DockKeys,
+        OutputKeys,
+        VehicleFile,
+    )
 
     _check_one(context)
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock, yes)
@@ -133,10 +150,26 @@ def detect(
     )
     report = Report(json=json, calibrated=model is not None)
     frames = open_source(source, fps, report.fault, report.note, delay)
-    around = Surroundings(None, report.notice, dry_run)
-    raise typer.Exit(
-        detect_frames(frames, detector, model, geometry, overlay, out or [], around, report)
+    settings = VehicleFile(
+        camera=CameraKeys(source=source, calibration=_text(camera), delay_s=delay),
+        dock=DockKeys(
+            file=_text(dock),
+            mapping=mapping,
+            colour=marker_colour or "",
+            fallback_hue_deg=fallback_hue,
+        ),
+        detector=DetectorKeys(method=method, independent=independent),
+        outputs=OutputKeys(results=out or [], record=_text(record), overlay=_text(overlay)),
     )
+    around = Surroundings(RunSetup(settings, model), report.notice, dry_run)
+    outputs = outputs_of(settings)
+    raise typer.Exit(
+        detect_frames(frames, detector, model, geometry, overlay, outputs, around, report)
+    )
+
+
+def _text(path: Path | None) -> str:
+    return "" if path is None else str(path)
 
 
 def _check_one(context: typer.Context) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from chromadock.output import json_line, result_record
-from chromadock.results.detection import Detection, Marker
+from chromadock.results.detection import MOST_CLIPPED, Detection, Marker
 from chromadock.sources import Frame
 from chromadock.text import plural
 
@@ -26,8 +26,6 @@ _DISAGREEMENT_DEG = 75.0
 """The mean of so many tracked frames says whether dock and vehicle agree: single ones err by
 more, and water and crosstalk turn the light of a dock that agrees by up to about 60 degrees."""
 
-_MOST_CLIPPED = 0.6
-"""Share of overexposed lamps that deserves a word."""
 _MISFIT_FRAMES = 3
 """One frame may be a chance."""
 
@@ -85,7 +83,7 @@ class Report:
 
     def _advise(self, detection: Detection) -> None:
         """Say once what several frames have shown to be amiss."""
-        if detection.clipped is not None and detection.clipped > _MOST_CLIPPED:
+        if detection.clipped is not None and detection.clipped > MOST_CLIPPED:
             self._clipped += 1
             if self._clipped == _COMPARED_FRAMES:
                 stops = max(round(detection.stops_over or 0.0), 1)

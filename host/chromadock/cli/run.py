@@ -30,6 +30,14 @@ def run(
         typer.Option("--dry-run", help="Send an autopilot nothing: say what it would understand."),
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIVE.mcap",
+            help="Goes before outputs.record: record frames, results and settings.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Find the dock in what the camera of VEHICLE.toml sees, and pass on where it is.
 
@@ -38,12 +46,15 @@ def run(
     from chromadock.cli.detect_frames import detect_frames
     from chromadock.cli.report import Report
     from chromadock.output import Surroundings
+    from chromadock.output.run_setup import RunSetup
     from chromadock.sources import open_source
     from chromadock.toml_file import change
-    from chromadock.vehicle.building import camera_of, detector_of, dock_of, mounting_of
+    from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
     from chromadock.vehicle.reading import read_vehicle
 
     changes = dict(change(text, "camera.source=1") for text in set_ or [])
+    if record is not None:
+        changes["outputs.record"] = str(record)
     settings = read_vehicle(vehicle, changes)
     camera, dock = camera_of(settings), dock_of(settings)
     detector = detector_of(settings, camera, dock)
@@ -55,8 +66,8 @@ def run(
         delay_s=settings.camera.delay_s,
     )
     overlay = Path(settings.outputs.overlay) if settings.outputs.overlay else None
-    outputs = settings.outputs.results
-    around = Surroundings(mounting_of(settings.mounting), report.notice, dry_run)
+    outputs = outputs_of(settings)
+    around = Surroundings(RunSetup(settings, camera), report.notice, dry_run)
     raise typer.Exit(
         detect_frames(frames, detector, camera, dock, overlay, outputs, around, report)
     )

@@ -13,7 +13,7 @@ from chromadock.doctor.finding import Finding
 from chromadock.doctor.ports import dock, serial_ports
 from chromadock.errors import ChromadockError
 from chromadock.output.addresses import check_output
-from chromadock.vehicle.building import camera_of, detector_of, dock_of
+from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
 from chromadock.vehicle.keys import VehicleFile
 
 DOCK_S = 2.0
@@ -35,7 +35,7 @@ def examined(vehicle: VehicleFile, dock_port: str | None, look_for_dock: bool) -
         model = camera_of(vehicle)
         yield calibration(model)
         detector_of(vehicle, model, dock_of(vehicle))
-        for text in vehicle.outputs.results:
+        for text in outputs_of(vehicle):
             check_output(text)
         yield Finding("ok", "settings", "dock, colours and outputs are well")
     except ChromadockError as error:

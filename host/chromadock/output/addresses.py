@@ -7,31 +7,36 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from chromadock.errors import ChromadockError
-from chromadock.mounting import Mounting
 from chromadock.output.lines import LinesFile, LinesUdp
 from chromadock.output.results import ResultOutput
+from chromadock.output.run_setup import RunSetup
 
-KINDS = "json:FILE, udp:HOST:PORT or mavlink:ADDRESS?receiver=NAME"
+KINDS = "json:FILE, mcap:FILE, udp:HOST:PORT or mavlink:ADDRESS?receiver=NAME"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Surroundings:
-    """What some outputs need to know: how the camera is mounted, None for one that looks ahead;
-    whom they ``tell`` in a line what goes wrong, from any thread; whether it is a ``dry_run``, in
-    which an autopilot is sent nothing."""
+    """What some outputs need to know.
 
-    mounting: Mounting | None
+    ``setup``: what the run is set to, None where nobody knows; ``tell``: takes a line for the
+    user, from any thread; ``dry_run``: whether an autopilot is sent nothing.
+    """
+
+    setup: RunSetup | None
     tell: Callable[[str], None]
     dry_run: bool = False
 
 
-def check_output(text: str) -> Callable[[Surroundings], ResultOutput]:
+Opener = Callable[[Surroundings], ResultOutput]
+
+
+def check_output(text: str) -> Opener:
     """What opens the output that ``text`` names, ``KIND:PLACE``; nothing is opened yet.
 
     Raises
     ------
     ChromadockError
-        One line, where there is no such kind or its place is none.
+        One line, where there is no such kind, no such folder, or no such form of an address.
     """
     kind, _, place = text.partition(":")
     if kind not in _KINDS or not place:
@@ -50,14 +55,26 @@ def open_output(text: str, surroundings: Surroundings) -> ResultOutput:
     return check_output(text)(surroundings)
 
 
-def _lines_file(text: str, place: str) -> Callable[[Surroundings], ResultOutput]:
-    path = Path(place)
-    if not path.resolve().parent.is_dir():
-        raise ChromadockError(f"--out {text}: no such folder: create it first")
+def _lines_file(text: str, place: str) -> Opener:
+    path = _in_a_folder(text, place)
     return lambda _: LinesFile(path)
 
 
-def _lines_udp(text: str, place: str) -> Callable[[Surroundings], ResultOutput]:
+def _recording(text: str, place: str) -> Opener:
+    path = _in_a_folder(text, place)
+
+    def opened(around: Surroundings) -> ResultOutput:
+        from chromadock.output.recording import Recording  # takes long to load
+
+        recording = Recording(path, around.setup)
+        if recording.path != path:
+            around.tell(f"{path} is there already: recording into {recording.path}")
+        return recording
+
+    return opened
+
+
+def _lines_udp(text: str, place: str) -> Opener:
     host, _, port = place.rpartition(":")
     host = host.removeprefix("[").removesuffix("]")  # as IPv6 is written before a port
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
@@ -65,19 +82,33 @@ def _lines_udp(text: str, place: str) -> Callable[[Surroundings], ResultOutput]:
     return lambda _: LinesUdp(host, int(port))
 
 
-def _mavlink(text: str, place: str) -> Callable[[Surroundings], ResultOutput]:
+def _mavlink(text: str, place: str) -> Opener:
     # pymavlink takes most of a second to load, which only who wants it waits for.
     from chromadock.autopilot.settings import AutopilotSettings
     from chromadock.output.mavlink import MavlinkDryRun, MavlinkOutput
+    from chromadock.vehicle.building import mounting_of
 
     settings = AutopilotSettings.parse(text)
-    return lambda around: (MavlinkDryRun if around.dry_run else MavlinkOutput)(
-        settings, around.mounting, around.tell
-    )
+
+    def opened(around: Surroundings) -> ResultOutput:
+        setup = around.setup
+        mounting = None if setup is None else mounting_of(setup.settings.mounting)
+        kind = MavlinkDryRun if around.dry_run else MavlinkOutput
+        return kind(settings, mounting, around.tell)
+
+    return opened
 
 
-_KINDS: dict[str, Callable[[str, str], Callable[[Surroundings], ResultOutput]]] = {
+def _in_a_folder(text: str, place: str) -> Path:
+    path = Path(place)
+    if not path.resolve().parent.is_dir():
+        raise ChromadockError(f"--out {text}: no such folder: create it first")
+    return path
+
+
+_KINDS: dict[str, Callable[[str, str], Opener]] = {
     "json": _lines_file,
+    "mcap": _recording,
     "udp": _lines_udp,
     "mavlink": _mavlink,
 }

@@ -13,6 +13,9 @@ from chromadock.results.track import Track
 RGB = tuple[int, int, int]
 Point = tuple[float, float]
 
+MOST_CLIPPED = 0.6
+"""Share of overexposed lamps that deserves a word: ranges suffer."""
+
 
 @dataclass(frozen=True, slots=True)
 class Background:

@@ -13,6 +13,7 @@ from pathlib import Path
 from chromadock.choices import DEFAULT_FPS, LONGEST_DELAY_S
 from chromadock.errors import ChromadockError
 from chromadock.sources.address import without_secrets
+from chromadock.sources.bag_kind import is_bag, split_topic
 from chromadock.sources.base import OnFault, Source, ignore
 from chromadock.sources.device import open_device, open_gstreamer
 from chromadock.sources.kinds import check_readable
@@ -22,7 +23,7 @@ from chromadock.sources.pictures import IMAGE_SUFFIXES, Pictures, is_picture
 from chromadock.sources.urls import open_url
 from chromadock.sources.video_opening import open_video
 
-_KINDS = "give a picture, a folder of pictures, a video, a camera index or a URL"
+_KINDS = "give a picture, a folder of pictures, a video, a recording, a camera index or a URL"
 
 
 def open_source(
@@ -38,8 +39,9 @@ def open_source(
     ----------
     text
         A camera index (``0``) or device (``/dev/video0``), a video file, a picture, a
-        folder or glob of pictures, a GStreamer pipeline (has a ``!``), or a URL.  What
-        exists as a file wins over the other readings, except for bare camera indices.
+        folder or glob of pictures, an MCAP file or ROS bag (``dive.mcap``, with several topics of
+        pictures ``dive.mcap?topic=/camera/image``), a GStreamer pipeline (has a ``!``), or a URL.
+        What exists as a file wins over the other readings, except for bare camera indices.
     fps
         Frames a second of a folder or glob of pictures.
     on_fault
@@ -65,12 +67,19 @@ def open_source(
     if text.isascii() and text.isdigit():
         name = f"camera {text}"
         return Live(partial(open_device, int(text), name), name, on_note, delay_s)
+    text, topic = split_topic(text)
     path = Path(text)
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
         live = _live(text, on_fault, on_note, delay_s)
         return live or _not_a_path(text, fps, on_fault, on_note, error)
+    if is_bag(path):
+        from chromadock.sources.bag import open_bag  # takes long to load
+
+        return open_bag(path, topic, on_fault)
+    if topic is not None:
+        raise ChromadockError(f"{path}: no recording, so it has no topic: leave ?topic= out")
     if stat.S_ISDIR(mode):
         return _folder(path, fps, on_fault, on_note)
     if stat.S_ISCHR(mode):

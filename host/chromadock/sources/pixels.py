@@ -57,10 +57,10 @@ def loaded(image: ImageFile, number: int, path: Path, place: str) -> Samples:
     deep = _is_deep_colour(image)
     image.load()  # fails where the end is missing
     samples = _deep_colour(path, number, image) if deep else None
-    return _samples(ImageOps.exif_transpose(image), place) if samples is None else samples
+    return shown(ImageOps.exif_transpose(image), place) if samples is None else samples
 
 
-def _samples(image: Image.Image, place: str) -> Samples:
+def shown(image: Image.Image, place: str) -> Samples:
     """HxW grey of 8 or 16 bits, or HxWx3 BGR of 8, of any loaded Pillow image."""
     if image.mode == "F":
         raise floating(place)

@@ -6,6 +6,7 @@ says nothing.
 
 from __future__ import annotations
 
+import io
 import itertools
 import warnings
 from collections.abc import Iterator
@@ -15,14 +16,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
+from PIL import Image, ImageOps, UnidentifiedImageError
 from PIL.ImageFile import ImageFile
 
 from chromadock.errors import ChromadockError
 from chromadock.sources.depth import Depth
 from chromadock.sources.kinds import check_readable, check_tiff, tiff_tags
 from chromadock.sources.mosaic import check_no_mosaic
-from chromadock.sources.pixels import floating, loaded, too_deep
+from chromadock.sources.pixels import floating, loaded, shown, too_deep
 from chromadock.text import one_line
 
 MAX_PIXELS = 80_000_000
@@ -159,6 +160,23 @@ def _fault(error: Exception, place: Path | str) -> ChromadockError:
     return ChromadockError(
         f"{place}: not a whole picture ({_reason(error, place)}): copy it again or remove it"
     )
+
+
+def decode_still(data: bytes, name: str) -> NDArray[np.uint8]:
+    """A picture file's content HxWx3 uint8 BGR; messages have ``name`` in the file's place.
+
+    Raises
+    ------
+    ChromadockError
+        One line, where it is broken, too large, or of another kind.
+    """
+    try:
+        with _quiet(), Image.open(io.BytesIO(data)) as image:
+            _check_size(image, name)
+            image.load()
+            return Depth().bgr(shown(ImageOps.exif_transpose(image), name), name)
+    except Exception as error:
+        raise _fault(error, name) from None
 
 
 def _reason(error: Exception, path: Path | str) -> str:

@@ -52,6 +52,12 @@ def mounting_of(keys: MountingKeys | None) -> Mounting | None:
     return Mounting(R_body_camera=R @ R_BODY_CAMERA_FORWARD)
 
 
+def outputs_of(vehicle: VehicleFile) -> list[str]:
+    """Where the results go, as ``--out`` names it."""
+    record = vehicle.outputs.record
+    return [*vehicle.outputs.results, *([f"mcap:{record}"] if record else [])]
+
+
 def detector_of(vehicle: VehicleFile, camera: CameraModel | None, dock: DockGeometry) -> Detector:
     """The detector.
 

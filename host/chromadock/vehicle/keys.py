@@ -38,7 +38,7 @@ class CameraKeys(_Table):
     source: Text = Field(
         "0",
         description="Where its frames come from: a camera's index or device, a stream's URL, a "
-        "GStreamer pipeline, a video, a picture or a folder.",
+        "GStreamer pipeline, a video, a recording, a picture or a folder.",
     )
     calibration: Text = Field(
         "",
@@ -94,8 +94,14 @@ class OutputKeys(_Table):
 
     results: Annotated[list[str], allowed("a list of texts in quotes")] = Field(
         [],
-        description="Any number of KIND:PLACE: json:FILE appends to a log, udp:HOST:PORT sends "
-        "datagrams, mavlink:ADDRESS?receiver=NAME tells an autopilot (docs/autopilot.md).",
+        description="Any number of KIND:PLACE: json:FILE appends to a log, mcap:FILE is what "
+        "record is, udp:HOST:PORT sends datagrams, mavlink:ADDRESS?receiver=NAME tells an "
+        "autopilot (docs/autopilot.md).",
+    )
+    record: Text = Field(
+        "",
+        description="File, such as dive.mcap, into which frames, results and settings are recorded "
+        "for `chromadock replay`; where it is there already, the next is dive-2.mcap. Empty: none.",
     )
     overlay: Text = Field(
         "", description="A video or folder into which is drawn what was seen. Empty: none."

@@ -65,6 +65,15 @@ def effective(vehicle: VehicleFile) -> list[tuple[str, str, bool]]:
     return found
 
 
+def as_toml(vehicle: VehicleFile) -> str:
+    """A TOML file with every key as it holds, read again as the same settings."""
+    parts: dict[str, list[str]] = {}
+    for dotted, value, _ in effective(vehicle):
+        table, _, key = dotted.partition(".")
+        parts.setdefault(f"[{table}]", []).append(f"{key} = {value}")
+    return "\n".join("\n".join([name, *lines, ""]) for name, lines in parts.items())
+
+
 def toml_value(value: Any) -> str:
     """As it is written in a TOML file: JSON's text, number, truth and list are TOML's too."""
     return json.dumps(value, ensure_ascii=False)

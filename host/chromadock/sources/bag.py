@@ -1,0 +1,141 @@
+"""Frames out of recordings: MCAP files and the bags of ROS 1 and ROS 2."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from chromadock.choices import DEFAULT_FPS
+from chromadock.errors import ChromadockError
+from chromadock.ros.bags import Bag, Topic
+from chromadock.ros.mcap_bag import McapBag, head
+from chromadock.ros.ros_bag import RosBag
+from chromadock.ros.topics import METADATA, START
+from chromadock.sources.bag_kind import is_mcap
+from chromadock.sources.base import Frame, OnFault, Source
+from chromadock.sources.ros_pictures import COMPRESSED, IMAGE, picture
+from chromadock.text import one_line, plural
+
+_RATE_FRAMES = 10
+"""So many stamps tell the frames a second."""
+
+
+class BagFrames(Source):
+    """The pictures of a topic, each at the time that its header says.
+
+    Times count from the start of the run that Chromadock recorded, or from the first picture.
+    Where headers have no stamp, when a message was logged counts.  Pictures that cannot be
+    decoded are told, counted and left out.
+
+    Parameters
+    ----------
+    bag : an open one; this closes it.
+    topic : of its pictures.
+    path : of the file or folder.
+    on_fault : takes one line for each fault.
+    start_ns : Unix nanoseconds at which time is 0; None for the first picture.
+    """
+
+    def __init__(
+        self, bag: Bag, topic: Topic, path: Path, on_fault: OnFault, start_ns: int | None
+    ) -> None:
+        self._bag = bag
+        self._topic = topic.name
+        self._path = path
+        self._on_fault = on_fault
+        self._start_ns = start_ns
+        self.count = topic.count
+        self.fps = self._rate()
+        self.places = frozenset([path])
+
+    def __iter__(self) -> Iterator[Frame]:
+        decoded = 0
+        start_ns = self._start_ns
+        for index, (logged_ns, message) in enumerate(self._bag.messages(self._topic)):
+            stamp_ns = _stamp_ns(message) or logged_ns
+            start_ns = stamp_ns if start_ns is None else start_ns
+            try:
+                image = picture(message, f"{self._path}: {self._topic}, message {index}")
+            except ChromadockError as error:
+                self.errors += 1
+                self._on_fault(f"{error} (skipped)")
+                continue
+            decoded += 1
+            yield Frame(image, self._path.name, index, (stamp_ns - start_ns) / 1e9)
+        if self._bag.cut_short is not None:
+            self.cut_short = True
+            self._on_fault(
+                f"{self._path}: the recording is cut short ({self._bag.cut_short}): "
+                f"{plural(decoded, 'frame')} could be used"
+            )
+        elif not decoded:
+            raise ChromadockError(f"{self._path}: no picture in {self._topic} can be read")
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._bag.close()
+
+    def _rate(self) -> float:
+        """Frames a second, by the first few."""
+        first = itertools.islice(self._bag.messages(self._topic), _RATE_FRAMES)
+        stamps = [_stamp_ns(message) or logged_ns for logged_ns, message in first]
+        spans = len(stamps) - 1
+        seconds = (stamps[-1] - stamps[0]) / 1e9 if spans > 0 else 0.0
+        return spans / seconds if 0 < spans <= 1000 * seconds else DEFAULT_FPS
+
+
+def open_bag(path: Path, topic: str | None, on_fault: OnFault) -> BagFrames:
+    """The frames of a recording.
+
+    Parameters
+    ----------
+    topic : of its pictures; None for the only one that there is.
+
+    Raises
+    ------
+    ChromadockError
+        Where it cannot be read, or ``topic`` is none of pictures or there are several.
+    """
+    start_ns = None
+    bag: Bag
+    if is_mcap(path):
+        bag = McapBag(path)
+        start_ns = _start_ns(path)
+    else:
+        bag = RosBag(path)
+    try:
+        return BagFrames(bag, _chosen(bag, topic, path), path, on_fault, start_ns)
+    except ChromadockError:
+        bag.close()
+        raise
+
+
+def _chosen(bag: Bag, topic: str | None, path: Path) -> Topic:
+    shown = [one for one in bag.topics if one.kind in (IMAGE, COMPRESSED)]
+    if topic is None and len(shown) == 1:
+        return shown[0]
+    for one in shown:
+        if one.name == topic:
+            return one
+    if not shown:
+        there = ", ".join(f"{one.name} ({one.kind})" for one in bag.topics) or "no messages"
+        raise ChromadockError(
+            f"{path}: no pictures in it, but {one_line(there, 300)}: record {IMAGE} or {COMPRESSED}"
+        )
+    names = ", ".join(one.name for one in shown)
+    which = "several topics of pictures" if topic is None else f"no pictures in {topic}"
+    raise ChromadockError(f"{path}: {which}: give {path}?topic= with one of {names}")
+
+
+def _start_ns(path: Path) -> int | None:
+    """When a recording of Chromadock began."""
+    said = head(path)[1].get(METADATA, {}).get(START, "")
+    return int(said) if said.removeprefix("-").isdecimal() else None
+
+
+def _stamp_ns(message: Any) -> int:
+    """Unix nanoseconds of a message's header; 0 where nobody set it."""
+    stamp = message.header.stamp
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)

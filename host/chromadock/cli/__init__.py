@@ -26,6 +26,7 @@ from chromadock.cli.exit_status import (
     EXIT_INTERRUPTED,
     EXIT_TERMINATED,
 )
+from chromadock.cli.replay import replay
 from chromadock.cli.run import run
 from chromadock.cli.simulate import simulate
 from chromadock.errors import ChromadockError
@@ -45,6 +46,7 @@ app = typer.Typer(
 app.command("detect")(detect)
 app.command("demo")(demo)
 app.command("evaluate")(evaluate)
+app.command("replay")(replay)
 app.command("run")(run)
 app.command("simulate")(simulate)
 app.add_typer(config, name="config")

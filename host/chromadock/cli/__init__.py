@@ -27,6 +27,7 @@ from chromadock.cli.exit_status import (
     EXIT_INTERRUPTED,
     EXIT_TERMINATED,
 )
+from chromadock.cli.replay import replay
 from chromadock.cli.run import run
 from chromadock.cli.simulate import simulate
 from chromadock.errors import ChromadockError
@@ -48,6 +49,7 @@ app.command("detect", context_settings={"allow_extra_args": True})(detect)
 app.command("demo")(demo)
 app.command("doctor")(doctor)
 app.command("evaluate")(evaluate)
+app.command("replay")(replay)
 app.command("run")(run)
 app.command("simulate")(simulate)
 app.add_typer(config, name="config")

@@ -32,7 +32,8 @@ class Recording(ResultOutput):
     """Writes frames, results and settings while the run goes on; see docs/recording.md.
 
     The settings stand at the start, and the file can be read up to its last whole piece though
-    nothing came after that: neither a kill nor the loss of power takes more than the last second.
+    nothing came after that: neither a kill nor the loss of power takes more than the last second,
+    and what waits for a disk or a computer that cannot keep up.
     A thread encodes and writes; ``write`` waits for the disk only where no camera waits for us.
 
     Parameters

@@ -48,7 +48,11 @@ from chromadock.vehicle.reading import read_vehicle
 
 COUNT = 12
 KILLS = int(os.environ.get("CHROMADOCK_KILLS", "5"))
-"""How many runs are killed, a multiple of five."""
+"""How many runs are killed."""
+
+RATE_HZ = 10 if KILLS == 5 else 30
+"""Of what they record: few enough for a computer that runs other tests besides; `make soak` has
+one for itself."""
 
 Messages = dict[str, list[tuple[int, Any]]]
 
@@ -387,44 +391,37 @@ def test_a_recording_without_a_camera_waits_for_the_disk_and_with_one_does_not(
 
 
 def write_without_end(path: Path, frame: Frame, detection: Detection, told: Connection) -> None:
-    """Thirty frames a second; tells the number and the time of each that was written."""
+    """``RATE_HZ`` frames a second; tells the number and the time of each that was written."""
     recording = Recording(path, RunSetup(VehicleFile(), CAMERA))
     start_s = time.monotonic()
     for number in itertools.count():
-        time.sleep(max(start_s + number / 30 - time.monotonic(), 0))
+        time.sleep(max(start_s + number / RATE_HZ - time.monotonic(), 0))
         now_s = time.monotonic()
         recording.write(Frame(frame.image, "camera 0", number, now_s - start_s), detection, 0.0)
         told.send((number, time.monotonic()))
 
 
-@pytest.mark.parametrize("seed", range(0, KILLS, 5))
+@pytest.mark.parametrize("seed", range(KILLS))
 def test_a_kill_at_any_moment_takes_the_last_second_at_most(
     tmp_path: Path, run: tuple[list[Frame], list[Detection]], seed: int
 ) -> None:
-    """Five at once: more would not record thirty frames a second on two processors."""
-    chance = random.Random(seed)
-    after_s = sorted(chance.uniform(0.05, 1.6) for _ in range(5))
-    paths = [tmp_path / f"{number}.mcap" for number in range(5)]
-    writers = [killable(path, run[0][-1], run[1][-1]) for path in paths]
-    start_s = time.monotonic()
-    killed_s = []
-    for (writer, _), later_s in zip(writers, after_s, strict=True):
-        time.sleep(max(start_s + later_s - time.monotonic(), 0))
-        killed_s.append(time.monotonic())
-        writer.kill()
-    for path, (writer, pipe), when_s in zip(paths, writers, killed_s, strict=True):
-        writer.join()
-        due = [number for number, at_s in received(pipe) if at_s < when_s - 1.0]
-        found, attached = recovered(path)
-        assert attached == {"vehicle.toml", "dock.toml"}
-        said = [json.loads(m.data)["frame"] for _, m in found.get("/chromadock/detection", [])]
-        assert said == list(range(len(said)))
-        assert len(said) > max(due, default=-1)
-        for topic in set(TOPICS) if said else ():
-            assert len(found[topic]) == len(said)
-        for _, message in found.get("/chromadock/image", []):
-            assert cv2.imdecode(np.frombuffer(bytes(message.data), np.uint8), 1) is not None
-        assert frames_of_ours(path) == len(said)
+    path = tmp_path / "dive.mcap"
+    writer, pipe = killable(path, run[0][-1], run[1][-1])
+    time.sleep(random.Random(seed).uniform(0.05, 2.2))
+    killed_s = time.monotonic()
+    writer.kill()
+    writer.join()
+    due = [number for number, at_s in received(pipe) if at_s < killed_s - 1.0]
+    found, attached = recovered(path)
+    assert attached == {"vehicle.toml", "dock.toml"}
+    said = [json.loads(m.data)["frame"] for _, m in found.get("/chromadock/detection", [])]
+    assert said == list(range(len(said)))
+    assert len(said) > max(due, default=-1)
+    for topic in set(TOPICS) if said else ():
+        assert len(found[topic]) == len(said)
+    for _, message in found.get("/chromadock/image", []):
+        assert cv2.imdecode(np.frombuffer(bytes(message.data), np.uint8), 1) is not None
+    assert frames_of_ours(path) == len(said)
 
 
 def killable(path: Path, frame: Frame, detection: Detection) -> tuple[BaseProcess, Connection]:

@@ -1,6 +1,5 @@
 #include "internal/cells.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,13 +91,13 @@ static void take_surround_away(work_t *work, int wide)
     }
 }
 
-/* What a filter answers to a row, in work->answer. */
-static void answer_row(const work_t *work, int y, const float weights[3])
+/* What a filter answers to a row. */
+static void answer_row(const work_t *work, int y, const float weights[3],
+                       float *restrict answer)
 {
     const float *restrict b = row_of(work->added[0], y);
     const float *restrict g = row_of(work->added[1], y);
     const float *restrict r = row_of(work->added[2], y);
-    float *restrict answer = work->answer;
     const int columns = work->snr.columns;
     if (!work->clipped[y]) {
         for (int x = 0; x < columns; x++)
@@ -128,7 +127,7 @@ static void measure_noise(work_t *work, const float (*weights)[3])
         for (int y = span.first; y <= span.last; y++) {
             const float share = cells_share(&span, y);
             for (int hue = 0; hue < work->hues; hue++) {
-                answer_row(work, y, weights[hue]);
+                answer_row(work, y, weights[hue], work->answer);
                 const float *restrict answer = work->answer;
                 float *restrict sums = work->sums + hue * columns;
                 for (int x = 0; x < columns; x++)
@@ -156,6 +155,20 @@ static void measure_noise(work_t *work, const float (*weights)[3])
     draw_all_out(work, BLOCK, work->hues);
 }
 
+/* What a filter answers to a row, in units of its noise. */
+static void answer_in_noise(const work_t *work, int y, int hue,
+                            const float weights[3], float *restrict answer)
+{
+    const int columns = work->snr.columns;
+    const image_t drawn = drawn_out(work->drawn, work->snr, BLOCK, hue);
+    const place_t p = cells_place(y, work->snr.rows, drawn.rows);
+    const float *restrict above = row_of(drawn, p.before);
+    const float *restrict below = row_of(drawn, p.after);
+    answer_row(work, y, weights, answer);
+    for (int x = 0; x < columns; x++)
+        answer[x] /= above[x] + p.share * (below[x] - above[x]);
+}
+
 /* The largest answer over its noise, and whose it is. */
 static void keep_largest(work_t *work, const float (*weights)[3],
                          float unexpected)
@@ -164,22 +177,14 @@ static void keep_largest(work_t *work, const float (*weights)[3],
     const int columns = whole.columns;
     int *restrict which = work->which;
     for (int y = 0; y < whole.rows; y++) {
-        const place_t p = cells_place(y, whole.rows, parts(whole.rows, BLOCK));
         float *restrict snr = row_of(whole, y);
-        for (int x = 0; x < columns; x++) {
-            snr[x] = -FLT_MAX;
-            which[x] = 0;
-        }
-        for (int hue = 0; hue < work->hues; hue++) {
-            const image_t drawn = drawn_out(work->drawn, whole, BLOCK, hue);
-            const float *restrict above = row_of(drawn, p.before);
-            const float *restrict below = row_of(drawn, p.after);
-            answer_row(work, y, weights[hue]);
+        answer_in_noise(work, y, 0, weights[0], snr);
+        memset(which, 0, (size_t)columns * sizeof(int));
+        for (int hue = 1; hue < work->hues; hue++) {
+            answer_in_noise(work, y, hue, weights[hue], work->answer);
             const float *restrict answer = work->answer;
-            const float less = hue == 0 ? 0.0F : unexpected;
             for (int x = 0; x < columns; x++) {
-                const float noise = above[x] + p.share * (below[x] - above[x]);
-                const float own = answer[x] / noise - less;
+                const float own = answer[x] - unexpected;
                 const float other = snr[x];
                 /* All bits, or none: a branch would keep the loop from being
                  * made of vector instructions. */

@@ -24,7 +24,8 @@ LARGEST_ROOM_PX = 80
 def clipped_at(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Whether lamps at (n, 2) pixels are overexposed there, in some channel."""
     height, width = frame_bgr.shape[:2]
-    column, row = np.clip(np.rint(xy).astype(np.intp), 0, [width - 1, height - 1]).T
+    last = np.array([width - 1, height - 1])
+    column, row = np.minimum(np.maximum(np.rint(xy).astype(np.intp), 0), last).T
     return np.asarray(frame_bgr[row, column].max(axis=1) >= CLIPPED)
 
 

@@ -12,7 +12,8 @@ from chromadock.robust.frame.response import Response, linear
 
 _STEP = 16  # of 1536: much finer than attenuation and crosstalk let a hue be known
 _HUES = np.arange(0, method.HUE_RANGE, _STEP)
-_PURE = linear(np.array([[rgb_from_hsv(int(h), 255, 255)[::-1] for h in _HUES]], np.uint8))[0]
+# (3, hues) linear BGR.
+_PURE = linear(np.array([[rgb_from_hsv(int(h), 255, 255)[::-1] for h in _HUES]], np.uint8))[0].T
 
 # Cells about a marker whose light is a lamp's: 5 x 5.
 _NEAR = np.mgrid[-2:3, -2:3].reshape(2, 1, -1)
@@ -47,8 +48,8 @@ def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | 
     """The same by the cells of one scale."""
     height, width = response.layout.shapes[scale]
     across, down = np.floor((xy + 0.5) / response.layout.cells[scale]).astype(np.intp).T
-    column = np.clip(across[:, None] + _NEAR[0], 0, width - 1)
-    row = np.clip(down[:, None] + _NEAR[1], 0, height - 1)
+    column = np.minimum(np.maximum(across[:, None] + _NEAR[0], 0), width - 1)
+    row = np.minimum(np.maximum(down[:, None] + _NEAR[1], 0), height - 1)
     at = response.layout.at(scale, row, column).ravel()
     light = response.light_at(at)
     whole = light.max(axis=1) < _CLIPPED
@@ -57,8 +58,8 @@ def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | 
     # What is behind a lamp: the second darkest of eight places about it.
     around = response.light_at(at + (_RING * (response.layout.shape[1], 1)).sum(axis=1)[:, None])
     added = (light - np.partition(around, 1, axis=0)[1])[whole].sum(axis=0)
-    whitened = np.linalg.solve(response.covariance, _PURE.T.astype(np.float64))
-    answer = (added @ whitened) / np.sqrt((_PURE.T * whitened).sum(axis=0))
+    whitened = np.linalg.solve(response.covariance, _PURE)
+    answer = (added @ whitened) / np.sqrt((_PURE * whitened).sum(axis=0))
     best = int(answer.argmax())
     # The noise of cells of the second scale; that of coarser ones is no more.
     sure = whole.all() or answer[best] >= _LEAST_SNR * np.count_nonzero(whole)

@@ -60,7 +60,7 @@ class Response:
 
     def light_at(self, at: NDArray[np.intp]) -> NDArray[np.float32]:
         """(..., 3) linear BGR: the light of cells, by their index."""
-        return np.moveaxis(self.light.reshape(3, -1)[:, at], 0, -1)
+        return np.moveaxis(self.light.reshape(3, -1).take(at, axis=1), 0, -1)
 
     def added_at(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
         """(N, 3) linear BGR: the light of cells beyond that of the surround, by their index."""

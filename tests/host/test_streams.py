@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -19,7 +20,10 @@ import pytest
 from picture_time import age_s
 
 from chromadock.errors import ChromadockError
+from chromadock.ros.mcap_bag import McapBag
+from chromadock.ros.topics import IMAGE
 from chromadock.sources import Source, open_source
+from chromadock.sources.ros_pictures import picture
 
 TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS.parent / "tools" / "setup"))
@@ -148,3 +152,24 @@ def test_mpeg_over_udp_is_read() -> None:
     assert all(frame.image.shape == (240, 320, 3) for frame in frames)
     assert (np.diff([frame.time_s for frame in frames]) > 0).all()
     assert frames[-1].image.mean() > frames[0].image.mean()
+
+
+def test_a_recording_of_a_camera_has_the_wall_clock_at_capture(rtsp: str, tmp_path: Path) -> None:
+    """The pictures themselves tell when they were taken."""
+    dive = tmp_path / "dive.mcap"
+    monotonic_to_wall_s = time.time() - time.monotonic()
+    command = [sys.executable, "-m", "chromadock", "detect", rtsp, "--record", str(dive)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as run:
+        assert run.stdout is not None
+        for _ in range(15):
+            run.stdout.readline()
+        run.send_signal(signal.SIGINT)
+        run.stdout.read()
+        assert run.wait() == 130
+    off = []
+    with McapBag(dive) as bag:
+        for _, message in bag.messages(IMAGE):
+            stamp_s = message.header.stamp.sec + message.header.stamp.nanosec / 1e9
+            off.append(age_s(picture(message, "frame"), stamp_s - monotonic_to_wall_s))
+    assert len(off) >= 14
+    assert abs(np.median(off)) < OLD_S

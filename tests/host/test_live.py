@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from chromadock.errors import ChromadockError
-from chromadock.sources.capture_time import WINDOW_S, CaptureTime
+from chromadock.sources.capture_time import CaptureTime
 from chromadock.sources.grabber import Grabber, Shot
 from chromadock.sources.live import Live
 
@@ -136,14 +136,14 @@ def test_a_streams_pictures_are_as_late_as_the_quickest_of_them_less_the_stated_
 
 
 def test_the_clocks_may_drift_apart() -> None:
-    """By 100 parts in a million: after an hour 0.36 s."""
+    """By 100 parts in a million: after an hour 0.36 s; in the window of a hundred 0.3 ms."""
     pictures = 30 * 3600
     clock = CaptureTime(False)
     last = 0.0
-    for k in range(0, pictures, 10):
+    for k in range(pictures):
         taken_s = k / 30
         last = clock.of(taken_s * 0.9999, taken_s + 0.02 + 0.01 * (k % 70 == 0)) - taken_s
-    assert last == pytest.approx(0.02, abs=WINDOW_S * 2e-4)
+    assert last == pytest.approx(0.02, abs=1e-3)
 
 
 def test_stamps_that_begin_anew_are_taken_for_a_new_clock() -> None:

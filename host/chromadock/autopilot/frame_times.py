@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from chromadock.autopilot.stamps import Stamps
+from chromadock.stamps import Stamps
 
 OLD_S = 2.0
 """A frame that seems older than this, or comes from the future, has another clock's time."""

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.autopilot.place import attitude_of
-from chromadock.autopilot.stamps import Stamps
 from chromadock.results.track import Vector
+from chromadock.stamps import Stamps
 from chromadock.track.attitude import Attitude
 
 Floats = NDArray[np.float64]

@@ -27,6 +27,7 @@ from chromadock.autopilot.receivers import ROVER
 from chromadock.autopilot.settings import AutopilotSettings
 from chromadock.autopilot.transport import Transport
 from chromadock.autopilot.wire import Message
+from chromadock.back_off import FIRST_RETRY_S, LONGEST_RETRY_S
 from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.results.detection import Detection
 from chromadock.results.track import Track
@@ -38,9 +39,6 @@ Tell = Callable[[str], None]
 
 TICK_S = 0.1
 """Longest wait of the thread; it wakes at once for bytes and for messages."""
-
-BACK_OFF_S = (0.5, 10.0)
-"""Between attempts to open the address: the first wait, doubled each time, and the longest."""
 
 WAITING = 16
 """Messages that wait for the thread; older ones are dropped, for they are out of date."""
@@ -220,8 +218,7 @@ class AutopilotOutput:
 
     def _run(self) -> None:
         """The thread: opens the address, again and again if need be, and serves it."""
-        first_s, most_s = BACK_OFF_S
-        wait_s = first_s
+        wait_s = FIRST_RETRY_S
         while not self._closing.is_set():
             try:
                 with contextlib.closing(Transport(self._settings.address)) as transport:
@@ -229,7 +226,7 @@ class AutopilotOutput:
             except (OSError, ValueError) as error:  # a baud rate that a port has not
                 with self._shared:
                     if self._companion.present(self._clock()):
-                        wait_s = first_s
+                        wait_s = FIRST_RETRY_S
                     self._companion.failed(_reason(error), self._clock())
             finally:
                 with self._shared:
@@ -238,7 +235,7 @@ class AutopilotOutput:
                     notices = self._notices()
             self._say_all(notices)
             self._closing.wait(wait_s)
-            wait_s = min(2 * wait_s, most_s)
+            wait_s = min(2 * wait_s, LONGEST_RETRY_S)
 
     def _serve(self, transport: Transport) -> None:
         """Read, answer and send until the port fails or the output is closed."""

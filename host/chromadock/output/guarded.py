@@ -5,15 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from chromadock.back_off import FIRST_RETRY_S, LONGEST_RETRY_S
 from chromadock.errors import ChromadockError
 from chromadock.output.results import ResultOutput
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame
 from chromadock.track.attitude import Attitude
-
-FIRST_RETRY_S = 0.5
-LONGEST_RETRY_S = 10.0
-"""How long a failed output is left alone: each time twice as long, up to the longest."""
 
 
 class Guarded(ResultOutput):

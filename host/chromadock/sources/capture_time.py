@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
-
-WINDOW_S = 10.0
-"""The quickest of so many seconds' arrivals tells how far the clocks are apart: long enough that
-one picture came without waiting, short enough that the clocks do not drift by a millisecond."""
-
-LOST_STEP_S = 1.0
-"""Stamps that step by so much more or less than the arrivals are of a clock that was set anew."""
+from chromadock.stamps import Stamps
 
 SAME_CLOCK_S = 1.0
 """A driver's stamp is no older than this when its picture arrives, and never of the future."""
@@ -33,16 +26,15 @@ class CaptureTime:
     def __init__(self, monotonic: bool, delay_s: float = 0.0) -> None:
         self._monotonic = monotonic
         self._delay_s = delay_s
-        self._recent: deque[tuple[float, float]] = deque()
+        self._stamps = Stamps()
         self._last_s: float | None = None
 
     def of(self, stamp_s: float | None, arrival_s: float) -> float:
         """Seconds of this computer's monotonic clock at which a picture was taken.
 
-        A stamp of a foreign clock is moved by the least difference between arrival and stamp
-        of the last seconds: what a picture waited longer than the quickest one on its way, it
-        is older by.  (The same is done by ArduPilot's JitterCorrection.)  Without a stamp the
-        arrival counts.  Times grow from picture to picture.
+        A stamp of another clock is moved to ours by the quickest of the newest pictures (see
+        ``stamps``): what a picture waited longer than that one on its way, it is older by.
+        Without a stamp the arrival counts.  Times grow from picture to picture.
 
         Parameters
         ----------
@@ -60,10 +52,7 @@ class CaptureTime:
             return arrival_s - self._delay_s
         if self._monotonic and 0 <= arrival_s - stamp_s <= SAME_CLOCK_S:
             return stamp_s
-        late_s = arrival_s - stamp_s
-        if self._recent and abs(late_s - self._recent[-1][1]) > LOST_STEP_S:
-            self._recent.clear()
-        self._recent.append((arrival_s, late_s))
-        while self._recent[0][0] < arrival_s - WINDOW_S:
-            self._recent.popleft()
-        return stamp_s + min(late for _, late in self._recent) - self._delay_s
+        self._stamps.heard(stamp_s, arrival_s)
+        ours_s = self._stamps.ours(stamp_s)
+        assert ours_s is not None  # it has just heard one
+        return ours_s - self._delay_s

@@ -9,14 +9,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.back_off import FIRST_RETRY_S, LONGEST_RETRY_S
 from chromadock.errors import ChromadockError
 from chromadock.sources.base import Frame, OnFault, Source, ignore
 from chromadock.sources.capture_time import CaptureTime
 from chromadock.sources.grabber import Grabber
-
-FIRST_RETRY_S = 0.5
-LONGEST_RETRY_S = 10.0
-"""Waits before a lost source is opened again: each twice the one before, up to the longest."""
 
 _STOP_S = 2.0
 """A reader that hangs in a driver for longer is left behind."""

@@ -10,7 +10,7 @@ import pytest
 from chromadock import Attitude
 from chromadock.autopilot.frame_times import FrameTimes
 from chromadock.autopilot.history import AHEAD_S, GAP_S, Telemetry
-from chromadock.autopilot.stamps import WINDOW, Stamps
+from chromadock.stamps import WINDOW, Stamps
 
 BOOTED_S = 1000.0
 """When the autopilot was switched on, by our clock; messages take at least 2 ms."""

@@ -1,4 +1,4 @@
-"""Another computer's clock, in ours.
+"""Another clock, a computer's or a camera's, in ours.
 
 As ArduPilot's JitterCorrection does it: a message cannot come before it was made, so the smallest
 difference of arrival and stamp is nearest to the difference of the clocks, and too large by the
@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 WINDOW = 50
-"""Messages: the smallest difference of the last 50 to 100 counts, for clocks drift apart."""
+"""Stamps: the smallest difference of the last 50 to 100 counts, for clocks drift apart."""
 
 BACK_S = 1.0
-"""A stamp older than the newest by more is of a computer that was started anew."""
+"""A stamp older than the newest by more is of a sender that was started anew."""
 
 
 @dataclass(slots=True)

@@ -128,7 +128,7 @@ static double whiten(const guess_t *guess, const set_t *set)
 static double whitened(const guess_t *guess, const set_t *set, double *errors)
 {
     const int32_t n = 2 * set->size;
-    double off[2 * MOST_MARKERS], square_sum = 0;
+    double off[2 * MOST_MARKERS] = {0}, square_sum = 0;
     for (int32_t i = 0; i < set->size; i++) {
         const peak_t *peak = &guess->frame.peaks[set->members[i]];
         const double *place = guess->dock->places + 2 * set->markers[i];

@@ -128,18 +128,22 @@ static double whiten(const guess_t *guess, const set_t *set)
 static double whitened(const guess_t *guess, const set_t *set, double *errors)
 {
     const int32_t n = 2 * set->size;
-    double off[2 * MOST_MARKERS] = {0}, square_sum = 0;
+    double square_sum = 0;
     for (int32_t i = 0; i < set->size; i++) {
         const peak_t *peak = &guess->frame.peaks[set->members[i]];
         const double *place = guess->dock->places + 2 * set->markers[i];
-        off[2 * i] = peak->x - place[0];
-        off[2 * i + 1] = peak->y - place[1];
+        errors[2 * i] = peak->x - place[0];
+        errors[2 * i + 1] = peak->y - place[1];
     }
-    for (int32_t i = 0; i < n; i++) {
-        errors[i] = 0;
+    /* From the last on: each takes of those before it what they are in pixels.
+     */
+    for (int32_t i = n - 1; i >= 0; i--) {
+        const double *row = guess->whiten + (ptrdiff_t)i * n;
+        double sum = 0;
         for (int32_t j = 0; j <= i; j++)
-            errors[i] += guess->whiten[(ptrdiff_t)i * n + j] * off[j];
-        square_sum += square(errors[i]);
+            sum += row[j] * errors[j];
+        errors[i] = sum;
+        square_sum += square(sum);
     }
     return square_sum;
 }
@@ -151,6 +155,18 @@ static bool all_differ(const set_t *set)
             if (set->members[i] == set->members[j])
                 return false;
     return true;
+}
+
+/* The next way to choose one of each marker's options, the last marker's the
+ * fastest, like an odometer; false after the last way. */
+static bool turn(const guess_t *guess, const set_t *set, int32_t *which)
+{
+    for (int32_t i = set->size - 1; i >= 0; i--) {
+        if (++which[i] < guess->counts[set->markers[i]])
+            return true;
+        which[i] = 0;
+    }
+    return false;
 }
 
 /* Finds the likeliest peaks for the markers of a set; its evidence becomes
@@ -167,23 +183,17 @@ static void choose(const guess_t *guess, set_t *set)
     for (int32_t i = 0; i < set->size; i++)
         along[i] = dock->along[set->markers[i]];
     set->evidence = -INFINITY;
-    /* All ways to choose, the last marker's fastest, like an odometer. */
-    for (int32_t i = 0; i >= 0;) {
-        for (i = 0; i < set->size; i++)
+    do {
+        for (int32_t i = 0; i < set->size; i++)
             tried.members[i] = guess->options[set->markers[i]][which[i]];
-        if (all_differ(&tried)) {
-            tried.evidence =
-                most - 0.5 * whitened(guess, &tried, errors) +
-                evidence_of_set(&guess->frame, set->size, tried.members, along);
-            if (tried.evidence > set->evidence)
-                *set = tried;
-        }
-        for (i = set->size - 1; i >= 0; i--) {
-            if (++which[i] < guess->counts[set->markers[i]])
-                break;
-            which[i] = 0;
-        }
-    }
+        if (!all_differ(&tried))
+            continue;
+        tried.evidence =
+            most - 0.5 * whitened(guess, &tried, errors) +
+            evidence_of_set(&guess->frame, set->size, tried.members, along);
+        if (tried.evidence > set->evidence)
+            *set = tried;
+    } while (turn(guess, set, which));
 }
 
 /* Which of a set's members are unlikely to be its markers.  Given the others'

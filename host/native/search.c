@@ -137,8 +137,7 @@ static double hoped_looks(search_t *search, int32_t k,
 {
     int32_t others = search->dock->markers - k;
     search->weighed++;
-    double rarity = search->rarest[others];
-    double colour = DBL_MIN; /* its logarithm is still a number */
+    double rarity = search->rarest[others], colour = DBL_MIN;
     for (int32_t i = 0; i < k; i++) {
         const double *ratios = search->colour[search->set[i]];
         double common = 1;

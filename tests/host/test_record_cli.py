@@ -12,7 +12,7 @@ from pathlib import Path
 
 import cv2
 import pytest
-from approach import CAMERA_YAML, frames
+from filmed_approach import CAMERA_YAML, frames
 from simulation import chromadock
 
 from chromadock.ros.mcap_bag import McapBag, head

@@ -25,7 +25,7 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from approach import CAMERA, CAMERA_YAML, FPS, detected, frames
+from filmed_approach import CAMERA, CAMERA_YAML, FPS, detected, frames
 from mcap.exceptions import EndOfFile
 from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from approach import CAMERA, CAMERA_YAML, detected, frames
+from filmed_approach import CAMERA, CAMERA_YAML, detected, frames
 from simulation import chromadock
 
 from chromadock import Detector, DockGeometry

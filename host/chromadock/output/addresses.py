@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from chromadock.errors import ChromadockError
 from chromadock.output.lines import LinesFile, LinesUdp
 from chromadock.output.results import ResultOutput
-from chromadock.output.run_setup import RunSetup
+
+if TYPE_CHECKING:
+    from chromadock.output.run_setup import RunSetup
 
 KINDS = "json:FILE, mcap:FILE, udp:HOST:PORT or mavlink:ADDRESS?receiver=NAME"
 

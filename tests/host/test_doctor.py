@@ -128,14 +128,10 @@ def test_a_dock_is_asked_for_its_firmware(tmp_path: Path) -> None:
     assert gone.level == "fault" and "\n" not in gone.words
 
 
-def test_the_command_prints_a_line_each_and_exits_by_the_worst(tmp_path: Path) -> None:
-    cv2.imwrite(str(tmp_path / "a.png"), np.zeros((48, 64, 3), np.uint8))
-    command = [sys.executable, "-m", "chromadock", "doctor", "--set"]
-    well = subprocess.run(
-        [*command, f"camera.source={tmp_path / 'a.png'}"], capture_output=True, text=True
-    )
-    assert well.returncode == 0, well.stdout + well.stderr
-    levels = [line.split()[0] for line in well.stdout.splitlines()]
-    assert len(levels) > 6 and set(levels) <= {"ok", "warning"}
-    ill = subprocess.run([*command, "camera.source=none.png"], capture_output=True, text=True)
-    assert ill.returncode == 1 and "fault    camera: none.png: no such file" in ill.stdout
+def test_the_command_prints_a_line_each_and_exits_by_the_worst() -> None:
+    command = [sys.executable, "-m", "chromadock", "doctor", "--set", "camera.source=none.png"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 1 and not done.stderr
+    levels = [line.split()[0] for line in done.stdout.splitlines()]
+    assert len(levels) > 6 and {"ok", "fault"} <= set(levels) <= {"ok", "warning", "fault"}
+    assert "fault    camera: none.png: no such file" in done.stdout

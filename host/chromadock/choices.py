@@ -18,8 +18,8 @@ DEFAULT_MAPPING = method.DEFAULT_MAPPING_NAME
 FALLBACK_HUE_DEG = method.FALLBACK_HUE * 360.0 / method.HUE_RANGE
 """Hue of the markers in grey water and at night."""
 
-HUE_MOST_DEG = (method.HUE_RANGE - 1) * 360.0 / method.HUE_RANGE
-"""The largest hue that there is."""
+HUE_MOST_DEG = round((method.HUE_RANGE - 1) * 360.0 / method.HUE_RANGE, 2)
+"""The largest hue that there is, as users are told it."""
 
 LONGEST_DELAY_S = 10.0
 """Of a picture from capture to arrival: one that is older does not help to steer."""

@@ -504,3 +504,14 @@ def test_usage_is_told_without_a_traceback(tmp_path):
     )
     assert done.returncode == 0
     assert "detect" in done.stdout
+
+
+def test_a_hue_beyond_the_last_one_is_a_line_and_the_last_one_is_none(folder):
+    """The largest that --help and messages name is accepted, a hair more is not a traceback."""
+    assert detect("in", "--fallback-hue", "359.77", cwd=folder).returncode == 0
+    done = detect("in", "--fallback-hue", "359.8", cwd=folder)
+    assert done.returncode == 2
+    assert done.stderr.splitlines() == [
+        "chromadock: error: an option: dock.fallback_hue_deg is 359.8: "
+        "it must be 0 to 359.77 degrees"
+    ]

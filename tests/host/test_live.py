@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from chromadock.errors import ChromadockError
+from chromadock.sources import live
 from chromadock.sources.capture_time import CaptureTime
 from chromadock.sources.grabber import Grabber, Shot
 from chromadock.sources.live import Live
@@ -104,6 +106,30 @@ def test_what_breaks_in_the_thread_is_raised_where_frames_are_asked_for() -> Non
 
     with Live(Broken, "camera") as source, pytest.raises(MemoryError):
         next(iter(source))
+
+
+def test_a_camera_that_hangs_is_not_closed_under_the_hands_of_its_reader(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(live, "_STOP_S", 0.05)
+    go_on = threading.Event()
+    cameras: list[Camera] = []
+
+    class Hanging(Camera):
+        def grab(self) -> Shot | None:
+            go_on.wait(10)
+            return None
+
+    def opened() -> Camera:
+        cameras.append(Hanging())
+        return cameras[-1]
+
+    source = Live(opened, "camera")
+    threading.Thread(target=lambda: list(source), daemon=True).start()
+    time.sleep(0.1)
+    source.close()
+    assert not cameras[0].closed
+    go_on.set()
 
 
 # --- the time of capture ---

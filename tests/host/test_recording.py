@@ -31,6 +31,7 @@ from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
+from chromadock import CameraModel
 from chromadock.errors import ChromadockError
 from chromadock.output import Guarded, ResultOutput, Surroundings
 from chromadock.output import open_output as open_named
@@ -283,6 +284,24 @@ def test_the_settings_come_back_with_the_files_that_they_name(tmp_path: Path) ->
     assert again.mounting == settings.mounting and again.detector == settings.detector
     assert again.dock == settings.dock.model_copy(update={"file": str(tmp_path / "dock.toml")})
     assert again.camera.source == "rtsp://...@192.168.2.2/cam..."
+
+
+@pytest.mark.parametrize(
+    ("lens", "given", "told"),
+    [
+        ("plumb_bob", [-0.2, 0.05, 0.001, 0.0], [-0.2, 0.05, 0.001, 0.0, 0.0]),
+        ("equidistant", [0.1, 0.01, 0.0, 0.0], [0.1, 0.01, 0.0, 0.0]),
+        ("equidistant", [], [0.0] * 4),
+        ("rational_polynomial", [0.1] * 8, [0.1] * 8),
+    ],
+)
+def test_the_lens_of_a_recording_is_the_cameras(
+    lens: str, given: list[float], told: list[float]
+) -> None:
+    """A fisheye's four coefficients are no plumb_bob's."""
+    matrix = np.array([[400.0, 0, 320], [0, 400, 240], [0, 0, 1]])
+    fields = camera_info(CameraModel(640, 480, matrix, np.array(given), lens=lens), 0)
+    assert (fields["distortion_model"], fields["d"]) == (lens, told)
 
 
 def test_settings_written_are_read_as_the_same(tmp_path: Path) -> None:

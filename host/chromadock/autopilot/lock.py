@@ -9,6 +9,7 @@ import numpy as np
 
 from chromadock.results.track import Track, TrackedPose
 from chromadock.rotation import matrix_from_quaternion
+from chromadock.track.motion import turn_between
 from chromadock.track.states import KEPT_S
 
 FLIP_RAD = 0.1
@@ -80,5 +81,5 @@ def jumped(before: Track, now: Track) -> bool:
 
 def _angle(a: TrackedPose, b: TrackedPose) -> float:
     """Radians between two attitudes."""
-    R = matrix_from_quaternion(a.q_wxyz).T @ matrix_from_quaternion(b.q_wxyz)
-    return float(np.arccos(np.clip((np.trace(R) - 1) / 2, -1.0, 1.0)))
+    turn = turn_between(matrix_from_quaternion(a.q_wxyz), matrix_from_quaternion(b.q_wxyz))
+    return float(np.linalg.norm(turn))

@@ -44,6 +44,8 @@ class Receiver:
         harm beside another source of position.
     autopilot, vehicles
         MAV_AUTOPILOT and the MAV_TYPEs of its heartbeat; any type where there are none.
+    absolute
+        Whether its LANDING_TARGET is the dock's place in the vehicle's local frame.
     """
 
     name: str
@@ -52,16 +54,12 @@ class Receiver:
     vision_by_default: bool
     autopilot: int
     vehicles: frozenset[int]
+    absolute: bool = False
 
     @property
     def needs_attitude(self) -> bool:
         """Whether it is told nothing at all without the vehicle's attitude."""
         return not self.landing_target or self.absolute
-
-    @property
-    def absolute(self) -> bool:
-        """Whether its LANDING_TARGET is the dock's place in the vehicle's local frame."""
-        return self.landing_target and self.name == "px4"
 
 
 _ARDUPILOT, _PX4 = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_AUTOPILOT_PX4
@@ -98,6 +96,7 @@ PX4 = Receiver(
     vision_by_default=True,
     autopilot=_PX4,
     vehicles=frozenset(),
+    absolute=True,
 )
 
 RECEIVERS = {receiver.name: receiver for receiver in (SUB, ROVER, COPTER, PX4)}

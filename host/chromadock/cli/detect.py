@@ -127,13 +127,7 @@ def detect(
     from chromadock.output.run_setup import RunSetup
     from chromadock.sources import open_source
     from chromadock.vehicle.building import outputs_of
-    from chromadock.vehicle.keys import (
-        CameraKeys,
-        DetectorKeys,
-        DockKeys,
-        OutputKeys,
-        VehicleFile,
-    )
+    from chromadock.vehicle.reading import settings_of
 
     _check_one(context)
     geometry = DockGeometry.default() if dock is None else DockGeometry.from_toml(dock, yes)
@@ -150,16 +144,22 @@ def detect(
     )
     report = Report(json=json, calibrated=model is not None)
     frames = open_source(source, fps, report.fault, report.note, delay)
-    settings = VehicleFile(
-        camera=CameraKeys(source=source, calibration=_text(camera), delay_s=delay),
-        dock=DockKeys(
-            file=_text(dock),
-            mapping=mapping,
-            colour=marker_colour or "",
-            fallback_hue_deg=fallback_hue,
-        ),
-        detector=DetectorKeys(method=method, independent=independent),
-        outputs=OutputKeys(results=out or [], record=_text(record), overlay=_text(overlay)),
+    settings = settings_of(
+        {
+            "camera.source": source,
+            "camera.calibration": _text(camera),
+            "camera.delay_s": delay,
+            "dock.file": _text(dock),
+            "dock.mapping": mapping,
+            "dock.colour": marker_colour or "",
+            "dock.fallback_hue_deg": fallback_hue,
+            "detector.method": method,
+            "detector.independent": independent,
+            "outputs.results": out or [],
+            "outputs.record": _text(record),
+            "outputs.overlay": _text(overlay),
+        },
+        "an option",
     )
     around = Surroundings(RunSetup(settings, model), report.notice, dry_run)
     outputs = outputs_of(settings)

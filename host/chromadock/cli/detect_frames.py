@@ -37,7 +37,7 @@ def detect_frames(
     report: Report,
 ) -> int:
     """Look for the dock in all ``frames``, tell ``report`` and the ``outputs``, close them all; the
-    exit status.  ``setup`` is what a recording keeps of the settings."""
+    exit status.  ``around``: what the outputs need to know of the run."""
     with ExitStack() as stack:
         stack.enter_context(frames)
         pictures = None

@@ -62,6 +62,8 @@ def camera(text: str, model: CameraModel | None) -> Iterator[Finding]:
 
 
 def _watched(source: Source, model: CameraModel | None) -> Iterator[Finding]:
+    # Asked before the thread that reads it has begun: no two may use a camera at once.
+    locks = list(_locks(source)) if isinstance(source, Live) else []
     ages_s: list[float] = []
     came, shape, begun_s = 0, (0, 0), time.monotonic()
     for frame in source:
@@ -80,8 +82,7 @@ def _watched(source: Source, model: CameraModel | None) -> Iterator[Finding]:
     if source.live:
         yield _rate((came - 1) / max(time.monotonic() - begun_s, 1e-3), source.fps)
         yield _age(sorted(ages_s)[len(ages_s) // 2])
-    if isinstance(source, Live):
-        yield from _locks(source)
+    yield from locks
 
 
 def _size(wide: int, high: int, model: CameraModel | None) -> Finding:

@@ -13,9 +13,6 @@ from chromadock.output.results import ResultOutput, result_record
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame
 
-MOST_BYTES = 65_507
-"""Of a UDP datagram."""
-
 
 class LinesFile(ResultOutput):
     """A line a frame, appended at once: a log that a kill or a full disk cannot spoil.
@@ -65,7 +62,7 @@ class LinesUdp(ResultOutput):
 
     def write(self, frame: Frame, detection: Detection, age_s: float | None) -> None:
         """Send one datagram."""
-        line = json_line(result_record(frame, detection, age_s)).encode()[:MOST_BYTES]
+        line = json_line(result_record(frame, detection, age_s)).encode()
         try:
             self._socket.sendto(line, self._address)
         except OSError as error:

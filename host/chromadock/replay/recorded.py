@@ -61,7 +61,9 @@ def read_recorded(path: Path, changes: Mapping[str, Any]) -> Recorded:
     with _unpacked(path, files) as folder:
         settings = read_vehicle(folder / VEHICLE, changes)
         camera = camera_of(settings)
-        detector = detector_of(settings, camera, dock_of(settings))
+        # The recorded dock was looked at when it was recorded; another one was not.
+        dock = dock_of(settings, confirmed="dock.file" not in changes)
+        detector = detector_of(settings, camera, dock)
     return Recorded(settings, camera, detector, _results(path, int(metadata[METADATA][START])))
 
 

@@ -44,9 +44,11 @@ def camera_info(camera: CameraModel, stamp_ns: int) -> Fields:
     }
 
 
+_LEAST = {"plumb_bob": 5, "equidistant": 4, "rational_polynomial": 8}
+"""Coefficients that ROS's lens models have at least; OpenCV leaves out the last ones that are 0."""
+
+
 def _distortion(camera: CameraModel) -> tuple[str, list[float]]:
-    """ROS's model and coefficients: plumb_bob has five, OpenCV may leave the last out."""
+    """ROS's model, by whose names the lenses are called, and coefficients."""
     coefficients = camera.distortion.tolist()
-    if len(coefficients) <= 5:
-        return "plumb_bob", coefficients + [0.0] * (5 - len(coefficients))
-    return "rational_polynomial", coefficients
+    return camera.lens, coefficients + [0.0] * (_LEAST[camera.lens] - len(coefficients))

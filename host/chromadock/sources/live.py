@@ -93,6 +93,8 @@ class Live(Source):
         self._stop.set()
         if self._reader is not None:
             self._reader.join(_STOP_S)
+            if self._reader.is_alive():
+                return  # closed under its hands a driver may crash; it ends with the program
         self._grabber.close()
 
     def _read(self) -> None:

@@ -25,8 +25,8 @@ def camera_of(vehicle: VehicleFile) -> CameraModel | None:
     return CameraModel.from_yaml(calibration) if calibration else None
 
 
-def dock_of(vehicle: VehicleFile) -> DockGeometry:
-    """The dock's markers.
+def dock_of(vehicle: VehicleFile, confirmed: bool = False) -> DockGeometry:
+    """The dock's markers; ``confirmed``: see ``DockGeometry``.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def dock_of(vehicle: VehicleFile) -> DockGeometry:
         Where its file is none.
     """
     file = vehicle.dock.file
-    return DockGeometry.from_toml(file) if file else DockGeometry.default()
+    return DockGeometry.from_toml(file, confirmed) if file else DockGeometry.default()
 
 
 def mounting_of(keys: MountingKeys | None) -> Mounting | None:

@@ -24,6 +24,7 @@ from chromadock.validation import allowed, between
 TEXT_IN_QUOTES = "a text in quotes"
 Text = Annotated[str, allowed(TEXT_IN_QUOTES)]
 Angle = Annotated[float, between(-180, 180, "degrees")]
+# Type checkers want a literal's choices written out, and these stand in ``choices`` alone.
 Mapping = Annotated[Literal[MAPPINGS], allowed(f"one of {', '.join(MAPPINGS)}")]  # type: ignore[valid-type]
 Method = Annotated[Literal[METHODS], allowed(f"one of {', '.join(METHODS)}")]  # type: ignore[valid-type]
 

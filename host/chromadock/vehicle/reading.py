@@ -41,15 +41,15 @@ def read_vehicle(path: Path, changes: Mapping[str, Any] | None = None) -> Vehicl
     return _validated(str(path), content, changes or {})
 
 
-def settings_of(changes: Mapping[str, Any]) -> VehicleFile:
-    """The defaults, but for ``changes``; see ``read_vehicle``.
+def settings_of(changes: Mapping[str, Any], name: str = "--set") -> VehicleFile:
+    """The defaults, but for ``changes``; see ``read_vehicle``.  ``name`` stands in messages.
 
     Raises
     ------
     ChromadockError
         As there.
     """
-    return _validated("--set", {}, changes)
+    return _validated(name, {}, changes)
 
 
 def _validated(name: str, content: dict[str, Any], changes: Mapping[str, Any]) -> VehicleFile:

@@ -196,6 +196,7 @@ def test_over_tcp_a_router_that_goes_away_is_told_once_and_found_again() -> None
                 server.settimeout(15)
                 end, _ = server.accept()
                 with end:
+                    # B023: each of these is called in the turn of the loop that makes it.
                     peer = Peer(lambda: waiting(end), end.sendall, BOAT)  # noqa: B023
                     peer.until(lambda: peer.named("HEARTBEAT"))  # noqa: B023
                     frame(out)

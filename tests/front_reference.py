@@ -57,11 +57,14 @@ def covariance_of(light: np.ndarray) -> np.ndarray:
     return kept.T @ kept / (6 * len(kept)) + 5e-9 * np.eye(3)
 
 
-def scale_of(light: np.ndarray, cell: int, weights: np.ndarray) -> Scale:
-    """What the filters (HUES, 3) make of one scale."""
+def scale_of(light: np.ndarray, coarser: np.ndarray, cell: int, weights: np.ndarray) -> Scale:
+    """What the filters (HUES, 3) make of one scale.
+
+    The surround is the mean of cells of the ``coarser`` scale: it is smooth, and they are few.
+    """
     height, width = light.shape[:2]
     wide = max(32 // cell, 4)
-    added = light - cv2.resize(resized(light, width // wide, height // wide), (width, height))
+    added = light - cv2.resize(resized(coarser, width // wide, height // wide), (width, height))
     clipped = light.max(axis=2) >= 0.8
     snr = []
     for hue, own in enumerate(weights):
@@ -79,7 +82,8 @@ def scales_of(frame: np.ndarray, response: Response) -> list[Scale]:
     lights = lights_of(frame, response.layout)
     cells = response.layout.cells
     seen = [response.weights[:1], *[response.weights] * (len(cells) - 1)]
-    return [scale_of(*each) for each in zip(lights, cells, seen, strict=True)]
+    coarser = [*lights[1:], lights[-1]]
+    return [scale_of(*each) for each in zip(lights, coarser, cells, seen, strict=True)]
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,7 @@
 #include "boxes.h"
 
+#include "internal/vectors.h"
+
 #include <stddef.h>
 #include <string.h>
 
@@ -21,9 +23,10 @@ static part_t part_of(int32_t cell, int32_t size, int32_t cells)
 
 /* Adds the pixels of some rows, ROWS at most, to the sums of the cells that
  * they are in.  room: for one row of numbers. */
-static void add_rows(const uint8_t *rows, int32_t count, int32_t width,
-                     int32_t across, uint16_t *restrict room,
-                     uint32_t *restrict sums)
+WIDE_VECTORS static void add_rows(const uint8_t *rows, int32_t count,
+                                  int32_t width, int32_t across,
+                                  uint16_t *restrict room,
+                                  uint32_t *restrict sums)
 {
     const size_t numbers = 3 * (size_t)width;
     memset(room, 0, numbers * sizeof *room);

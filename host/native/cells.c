@@ -1,4 +1,5 @@
 #include "internal/cells.h"
+#include "internal/vectors.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,8 +47,8 @@ float cells_share(const span_t *span, int cell)
     return cell == span->last ? span->tail : 1.0F;
 }
 
-void cells_sum_parts(const float *restrict in, int n, float *restrict out,
-                     int parts, float factor)
+WIDE_VECTORS void cells_sum_parts(const float *restrict in, int n,
+                                  float *restrict out, int parts, float factor)
 {
     if (n == 2 * parts) {
         for (int k = 0; k < parts; k++)
@@ -71,7 +72,7 @@ float cells_mean_factor(int rows, int columns, image_t out)
 }
 
 /* Means of 2 x 2 cells. */
-static void halve(image_t in, image_t out)
+WIDE_VECTORS static void halve(image_t in, image_t out)
 {
     for (int k = 0; k < out.rows; k++) {
         const float *restrict above = row_of(in, 2 * k);
@@ -83,7 +84,7 @@ static void halve(image_t in, image_t out)
     }
 }
 
-void cells_shrink(image_t in, image_t out, float *restrict sums)
+WIDE_VECTORS void cells_shrink(image_t in, image_t out, float *restrict sums)
 {
     if (in.rows == 2 * out.rows && in.columns == 2 * out.columns) {
         halve(in, out);
@@ -103,19 +104,25 @@ void cells_shrink(image_t in, image_t out, float *restrict sums)
     }
 }
 
-place_t cells_place(int i, int m, int n)
+/* As cells_place(), where a step is n over m. */
+static inline place_t place_of(int i, float step, int n)
 {
-    const float at = ((float)i + 0.5F) * (float)n / (float)m - 0.5F;
-    if (at <= 0.0F)
-        return (place_t){0, 0, 0.0F};
+    const float at = greater(((float)i + 0.5F) * step - 0.5F, 0.0F);
     const int before = least((int)at, n - 1);
     return (place_t){before, least(before + 1, n - 1), at - (float)before};
 }
 
-void cells_draw_out(image_t in, image_t out, place_t *restrict places)
+place_t cells_place(int i, int m, int n)
 {
+    return place_of(i, (float)n / (float)m, n);
+}
+
+WIDE_VECTORS void cells_draw_out(image_t in, image_t out,
+                                 place_t *restrict places)
+{
+    const float step = (float)in.columns / (float)out.columns;
     for (int x = 0; x < out.columns; x++)
-        places[x] = cells_place(x, out.columns, in.columns);
+        places[x] = place_of(x, step, in.columns);
     for (int y = 0; y < in.rows; y++) {
         const float *restrict from = row_of(in, y);
         float *restrict to = row_of(out, y);
@@ -139,7 +146,7 @@ static int mirrored(int i, int n)
     return n > 1 ? i : 0;
 }
 
-void cells_smooth(image_t image, float *room)
+WIDE_VECTORS void cells_smooth(image_t image, float *room)
 {
     float kernel[2 * REACH + 1], sum = 0;
     for (int i = -REACH; i <= REACH; i++)

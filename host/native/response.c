@@ -1,4 +1,5 @@
 #include "internal/cells.h"
+#include "internal/vectors.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,6 +20,9 @@
 /* One scale of a frame on the way to its response. */
 typedef struct {
     image_t light[3], added[3];
+    /* The light of the next scale, or of the last scale its own: the surround
+     * is smooth, and its mean costs a quarter there. */
+    image_t coarser[3];
     image_t snr;
     uint8_t *best;
     bool *clipped;   /* of each row, whether it may have a clipped cell */
@@ -65,11 +69,11 @@ static void draw_all_out(work_t *work, int wide, int images)
 }
 
 /* The light that each cell adds to that of the water about it. */
-static void take_surround_away(work_t *work, int wide)
+WIDE_VECTORS static void take_surround_away(work_t *work, int wide)
 {
     const image_t whole = work->snr;
     for (int c = 0; c < 3; c++)
-        cells_shrink(work->light[c], parts_of(work->coarse, whole, wide, c),
+        cells_shrink(work->coarser[c], parts_of(work->coarse, whole, wide, c),
                      work->answer);
     draw_all_out(work, wide, 3);
     for (int c = 0; c < 3; c++) {
@@ -92,8 +96,9 @@ static void take_surround_away(work_t *work, int wide)
 }
 
 /* What a filter answers to a row. */
-static void answer_row(const work_t *work, int y, const float weights[3],
-                       float *restrict answer)
+WIDE_VECTORS static void answer_row(const work_t *work, int y,
+                                    const float weights[3],
+                                    float *restrict answer)
 {
     const float *restrict b = row_of(work->added[0], y);
     const float *restrict g = row_of(work->added[1], y);
@@ -115,7 +120,7 @@ static void answer_row(const work_t *work, int y, const float weights[3],
 }
 
 /* The local fluctuation of each filter's answers, in work->drawn. */
-static void measure_noise(work_t *work, const float (*weights)[3])
+WIDE_VECTORS static void measure_noise(work_t *work, const float (*weights)[3])
 {
     const image_t whole = work->snr;
     const int columns = whole.columns;
@@ -155,13 +160,14 @@ static void measure_noise(work_t *work, const float (*weights)[3])
     draw_all_out(work, BLOCK, work->hues);
 }
 
-/* What a filter answers to a row, in units of its noise. */
-static void answer_in_noise(const work_t *work, int y, int hue,
-                            const float weights[3], float *restrict answer)
+/* What a filter answers to a row, in units of its noise.  p: where the row is
+ * between those of blocks. */
+WIDE_VECTORS static void answer_in_noise(const work_t *work, int y, place_t p,
+                                         int hue, const float weights[3],
+                                         float *restrict answer)
 {
     const int columns = work->snr.columns;
     const image_t drawn = drawn_out(work->drawn, work->snr, BLOCK, hue);
-    const place_t p = cells_place(y, work->snr.rows, drawn.rows);
     const float *restrict above = row_of(drawn, p.before);
     const float *restrict below = row_of(drawn, p.after);
     answer_row(work, y, weights, answer);
@@ -170,18 +176,19 @@ static void answer_in_noise(const work_t *work, int y, int hue,
 }
 
 /* The largest answer over its noise, and whose it is. */
-static void keep_largest(work_t *work, const float (*weights)[3],
-                         float unexpected)
+WIDE_VECTORS static void keep_largest(work_t *work, const float (*weights)[3],
+                                      float unexpected)
 {
     const image_t whole = work->snr;
     const int columns = whole.columns;
     int *restrict which = work->which;
     for (int y = 0; y < whole.rows; y++) {
         float *restrict snr = row_of(whole, y);
-        answer_in_noise(work, y, 0, weights[0], snr);
+        const place_t p = cells_place(y, whole.rows, parts(whole.rows, BLOCK));
+        answer_in_noise(work, y, p, 0, weights[0], snr);
         memset(which, 0, (size_t)columns * sizeof(int));
         for (int hue = 1; hue < work->hues; hue++) {
-            answer_in_noise(work, y, hue, weights[hue], work->answer);
+            answer_in_noise(work, y, p, hue, weights[hue], work->answer);
             const float *restrict answer = work->answer;
             for (int x = 0; x < columns; x++) {
                 const float own = answer[x] - unexpected;
@@ -212,6 +219,8 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
         float *light = channel(layout, frame->light, c);
         float *added = channel(layout, frame->added, c);
         work.light[c] = at_scale(layout, light, scale);
+        work.coarser[c] =
+            at_scale(layout, light, least(scale + 1, layout->scales - 1));
         work.added[c] = at_scale(layout, added, scale);
     }
     const int columns = work.snr.columns;

@@ -295,9 +295,10 @@ static int32_t views_from(const search_t *search, int32_t from,
         view.square = view.x * view.x + view.y * view.y;
         view.along = view.x * window->x + view.y * window->y;
         view.across = view.y * window->x - view.x * window->y;
-        if (fabs(view.across) < window->slope * view.along + slack &&
-            view.square > shortest && view.square < longest)
-            views[count++] = view;
+        views[count] = view;
+        /* Without a branch, for nobody could foretell it. */
+        count += (fabs(view.across) < window->slope * view.along + slack) &
+                 (view.square > shortest) & (view.square < longest);
     }
     return count;
 }
@@ -363,8 +364,11 @@ static void search_from(search_t *search, int32_t p)
             const view_t *side = &sides[j];
             double x = side->x * search->base_x + side->y * search->base_y;
             double y = side->y * search->base_x - side->x * search->base_y;
-            if (x > box->left && x < box->right && y > box->top &&
-                y < box->bottom && side->peak != base->peak)
+            /* One branch that is seldom taken in place of five that nobody can
+             * foretell. */
+            const int inside = (x > box->left) & (x < box->right) &
+                               (y > box->top) & (y < box->bottom);
+            if (inside && side->peak != base->peak)
                 search_third(search, base, span, side->peak, x, y);
         }
     }

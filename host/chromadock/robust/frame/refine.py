@@ -203,10 +203,9 @@ def _patches(
         size = (side, side * len(xy))
         light = np.asarray(cv2.resize(light, size, interpolation=cv2.INTER_AREA), np.float32)
     smoothers = _smoothers(middle, around, len(widths) + 2)
-    count, rows, _ = smoothers.shape
-    # OpenCV's product: numpy's takes twice as long, or starts threads of its own.
-    across = cv2.gemm(light, smoothers.reshape(-1, side), 1, np.empty(0), 0, flags=cv2.GEMM_2_T)
-    across = across.reshape(len(xy), side, count, rows).transpose(0, 2, 1, 3)
+    # So many small products, and not one large one: OpenBLAS, numpy's as OpenCV's, would start
+    # threads for that, which wait for each other where other processes are busy.
+    across = light.reshape(len(xy), 1, side, side) @ smoothers.transpose(0, 2, 1)
     smoothed = smoothers @ across
     # The surround of a width is the smoothing of one two places on.
     layers = smoothed[:, :-2] - smoothed[:, 2:]

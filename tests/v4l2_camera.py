@@ -54,7 +54,8 @@ def usual(**faults: int) -> list[Knob]:
             fault=f("white_balance", NONE),
         ),
         Knob(
-            EXPOSURE_AUTO, MENU, 0, 3, APERTURE_PRIORITY, menu=0b1010, fault=f("exposure_auto", NONE)
+            EXPOSURE_AUTO, MENU, 0, 3, APERTURE_PRIORITY, menu=0b1010,
+            fault=f("exposure_auto", NONE),
         ),
         Knob(
             EXPOSURE, INTEGER, 1, 5000, 156, automatic=EXPOSURE_AUTO, fault=f("exposure", NONE)

@@ -54,10 +54,12 @@ def apply(controls: Controls, wishes: Wishes, held: Held, settled: bool) -> list
     ControlsAwayError
         Where the controls cannot be reached.
     """
-    before = controls.read()
     wanted = [(f, wishes[f.key]) for f in FEATURES if wishes.get(f.key, "") != ""]
     if not settled:
         wanted = [(f, w) for f, w in wanted if w != LOCK or f.key in held.values]
+    if not wanted:
+        return []
+    before = controls.read()
     targets = {f.key: _target(f, wish, before, held) for f, wish in wanted}
     refusals: dict[str, str] = {}
     for feature, wish in wanted:

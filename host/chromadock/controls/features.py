@@ -101,18 +101,15 @@ EXPOSURE = Feature(
     (EXPOSURE_ABSOLUTE,),
 )
 SENSITIVITY = Feature("gain", "", 1, (Switch(AUTOGAIN),), (GAIN, ANALOGUE_GAIN))
-FEATURES = (
-    EXPOSURE,
-    SENSITIVITY,
-    Feature(
-        "white_balance",
-        "K",
-        1,
-        (Switch(AUTO_WHITE_BALANCE), Switch(AUTO_N_PRESET_WHITE_BALANCE)),
-        (WHITE_BALANCE_TEMPERATURE,),
-    ),
-    Feature("focus", "", 1, (Switch(FOCUS_AUTO),), (FOCUS_ABSOLUTE,)),
+WHITE_BALANCE = Feature(
+    "white_balance",
+    "K",
+    1,
+    (Switch(AUTO_WHITE_BALANCE), Switch(AUTO_N_PRESET_WHITE_BALANCE)),
+    (WHITE_BALANCE_TEMPERATURE,),
 )
+FOCUS = Feature("focus", "", 1, (Switch(FOCUS_AUTO),), (FOCUS_ABSOLUTE,))
+FEATURES = (EXPOSURE, SENSITIVITY, WHITE_BALANCE, FOCUS)
 
 NUMBERS = frozenset(
     [EXPOSURE_AUTO_PRIORITY]

@@ -12,6 +12,7 @@ from chromadock.controls.features import (
     EXPOSURE_AUTO_PRIORITY,
     FEATURES,
     SENSITIVITY,
+    WHITE_BALANCE,
     Feature,
 )
 from chromadock.doctor.finding import Finding
@@ -66,15 +67,18 @@ class ControlsCheck:
 
 def _told(table: Table, kept: frozenset[str]) -> Iterator[Finding]:
     for feature in FEATURES:
-        if feature.switch(table) is None and feature.number(table) is None:
-            continue
-        if (
-            feature is SENSITIVITY
-            and feature.switch(table) is None
-            and EXPOSURE.is_automatic(table)
-        ):
-            continue  # it follows the exposure's automatic, and so does what is said of that
-        yield _one(feature, table, feature.key in kept)
+        switch, number = feature.switch(table), feature.number(table)
+        if switch is None and number is None:
+            # Many a lens has no focus, and many a sensor no gain, that could change.
+            if feature in (EXPOSURE, WHITE_BALANCE):
+                yield Finding(
+                    "warning",
+                    feature.label,
+                    "this camera has no such control: see that it does not change by itself",
+                )
+        elif feature is not SENSITIVITY or switch is not None or not EXPOSURE.is_automatic(table):
+            # Without a switch of its own a gain may follow the automatic exposure.
+            yield _one(feature, table, feature.key in kept)
 
 
 def _one(feature: Feature, table: Table, kept: bool) -> Finding:

@@ -18,6 +18,7 @@ from camera_manager import (
     WHITE_BALANCE,
     WHITE_BALANCE_AUTO,
     Manager,
+    usual,
 )
 
 from chromadock.controls import keeper as keeping
@@ -228,7 +229,7 @@ def test_a_stream_that_comes_back_has_its_camera_set_again_and_nothing_is_told_t
         next(frames)
         assert manager.value(ONE, EXPOSURE) == 82, "set before the first picture"
         until(lambda: len(told) == 1)
-        manager.cameras[ONE] = Manager(ONE).cameras[ONE]  # plugged in again
+        manager.cameras[ONE] = usual()  # plugged in again
         lost.set()
         until(lambda: any("is back" in line for line in told))
         next(frames)
@@ -283,7 +284,7 @@ def test_a_lock_waits_until_the_camera_has_settled_and_holds_after_a_reconnect(
         until(lambda: manager.value(ONE, EXPOSURE_AUTO) == 1)
         assert manager.value(ONE, EXPOSURE) == 321
         time.sleep(0.3)
-        manager.cameras[ONE] = Manager(ONE).cameras[ONE]
+        manager.cameras[ONE] = usual()
         lost.set()
         until(lambda: manager.value(ONE, EXPOSURE) == 321)
         assert manager.value(ONE, EXPOSURE_AUTO) == 1

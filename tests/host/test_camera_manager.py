@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -125,7 +126,11 @@ def test_the_only_camera_is_the_one_where_no_stream_tells(manager: Manager) -> N
         ("rtsp://[fe80::2]:8554/video_0", "", "http://[fe80::2]:6020"),
         ("RTSPS://cam.local/x", "", "http://cam.local:6020"),
         ("udpsrc port=5600 ! appsink", "http://blueos.local", "http://blueos.local:6020"),
-        ("0", "http://10.0.0.1:80/manager/?device=/dev/video2", "http://10.0.0.1:80/manager"),
+        (
+            "udp://h:5600",
+            "http://10.0.0.1:80/manager/?device=/dev/video2",
+            "http://10.0.0.1:80/manager",
+        ),
     ],
 )
 def test_the_managers_address_is_given_or_follows_from_the_stream(
@@ -140,6 +145,15 @@ def test_the_managers_address_is_given_or_follows_from_the_stream(
 @pytest.mark.parametrize("source", ["dive.mp4", "http://host/video.mp4", "videotestsrc ! appsink"])
 def test_recordings_and_pipelines_have_no_controls(source: str) -> None:
     assert controls_of(source) is None
+
+
+def test_a_camera_of_this_computer_is_not_the_managers() -> None:
+    if sys.platform != "linux":
+        pytest.skip("V4L2 is Linux's")
+    opener = controls_of("97", "http://192.168.2.2:6020")
+    assert opener is not None
+    with pytest.raises(ControlsAwayError, match="/dev/video97"):
+        opener()
 
 
 @pytest.mark.parametrize(

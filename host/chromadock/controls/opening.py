@@ -39,12 +39,13 @@ def controls_of(source: str, manager: str = "") -> OpenControls | None:
     ChromadockError
         Where ``manager`` is no address.
     """
-    if manager:
-        return partial(CameraManager, manager_address(manager), source)
+    address = manager_address(manager) if manager else None
     if source.isascii() and source.isdigit():
         return _device(f"/dev/video{int(source)}")
     if _is_device(source):
         return _device(source)
+    if address is not None:
+        return partial(CameraManager, address, source)
     try:
         host = urlsplit(source).hostname if source.lower().startswith("rtsp") else None
     except ValueError:
@@ -55,10 +56,9 @@ def controls_of(source: str, manager: str = "") -> OpenControls | None:
 def keeper_of(
     source: str, name: str, settings: CameraSettings, tell: Callable[[str], None]
 ) -> Keeper | None:
-    """What keeps the camera of ``source`` set; None where nothing is to be set.
+    """What keeps the camera of ``source`` set; None where nothing is to be set, or nothing can be.
 
-    Where something is to be set and cannot be, ``tell`` takes a line that says so; ``name`` is the
-    source's in messages.
+    ``name``: the source's in the lines that ``tell`` takes; see ``Keeper``.
 
     Raises
     ------
@@ -66,16 +66,22 @@ def keeper_of(
         Where the manager's address is none.
     """
     open_controls = controls_of(source, settings.manager)
-    if not settings.wishes:
-        return None
-    if open_controls is None:
-        keys = ", ".join(f"camera.{key}" for key in settings.wishes)
-        tell(
-            f"{name}: nothing can be set here, so {keys} will not be: leave it out, or give "
-            "camera.manager where a camera manager has the camera"
-        )
+    if not settings.wishes or open_controls is None:
         return None
     return Keeper(open_controls, settings.wishes, name, tell)
+
+
+def cannot_be_set(name: str, wishes: Wishes, live: bool) -> str:
+    """The line about keys that a source does not follow, for nothing can be set there; ``live``:
+    whether it is a camera or a stream."""
+    keys = ", ".join(f"camera.{key}" for key in wishes)
+    mend = "no camera, so they change nothing"
+    if live:
+        mend = (
+            "nothing can be set here: set the camera by its own means, or give camera.manager if a "
+            "camera manager has it"
+        )
+    return f"{name}: {keys}: {mend}"
 
 
 def _device(path: str) -> OpenControls | None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from chromadock.choices import DEFAULT_FPS, LONGEST_DELAY_S
 from chromadock.controls.keeper import Keeper
-from chromadock.controls.opening import CameraSettings, keeper_of
+from chromadock.controls.opening import CameraSettings, cannot_be_set, keeper_of
 from chromadock.errors import ChromadockError
 from chromadock.sources.address import without_secrets
 from chromadock.sources.bag_kind import is_bag, split_topic
@@ -27,6 +27,9 @@ from chromadock.sources.urls import open_url
 from chromadock.sources.video_opening import open_video
 
 _KINDS = "give a picture, a folder of pictures, a video, a recording, a camera index or a URL"
+_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+://")
+_PIPELINE = "pipeline"
+"""Pipelines are called so in messages, for they may hold passwords."""
 
 
 def open_source(
@@ -71,10 +74,27 @@ def open_source(
             f"--delay is {delay_s:g}: give the seconds from capture to arrival, "
             f"0 to {LONGEST_DELAY_S:g}"
         )
-    index = text.isascii() and text.isdigit()
-    name = f"camera {text}" if index else "pipeline" if "!" in text else without_secrets(text)
-    keeper = keeper_of(text, name, camera or CameraSettings(), on_note)
-    if index:
+    camera = camera or CameraSettings()
+    name = _live_name(text)
+    keeper = keeper_of(text, name, camera, on_note)
+    source = _opened(text, fps, on_fault, on_note, delay_s, keeper)
+    if camera.wishes and (keeper is None or not source.live):
+        shown = name if source.live else without_secrets(text)
+        on_note(cannot_be_set(shown, camera.wishes, source.live))
+    return source
+
+
+def _opened(
+    text: str,
+    fps: float,
+    on_fault: OnFault,
+    on_note: OnFault,
+    delay_s: float,
+    keeper: Keeper | None,
+) -> Source:
+    """The source, by what kind it is of."""
+    if _is_index(text):
+        name = _live_name(text)
         return Live(kept(partial(open_device, int(text), name), keeper), name, on_note, delay_s)
     text, topic = split_topic(text)
     path = Path(text)
@@ -96,14 +116,26 @@ def open_source(
     return _file(path, fps, on_fault, on_note)
 
 
+def _is_index(text: str) -> bool:
+    """Whether a camera is named by its number."""
+    return text.isascii() and text.isdigit()
+
+
+def _live_name(text: str) -> str:
+    """What a camera, pipeline or stream is called in messages."""
+    if _is_index(text):
+        return f"camera {text}"
+    return _PIPELINE if "!" in text and not _URL.match(text) else without_secrets(text)
+
+
 def _live(
     text: str, on_fault: OnFault, on_note: OnFault, delay_s: float, keeper: Keeper | None
 ) -> Source | None:
     """What is no path and delivers frames by itself."""
-    if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
+    if _URL.match(text):
         return open_url(text, on_fault, on_note, delay_s, keeper)
     if "!" in text:
-        return Live(kept(partial(open_gstreamer, text), keeper), "pipeline", on_note, delay_s)
+        return Live(kept(partial(open_gstreamer, text), keeper), _PIPELINE, on_note, delay_s)
     return None
 
 

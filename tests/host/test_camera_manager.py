@@ -237,6 +237,7 @@ def source_of(
 def test_a_stream_that_comes_back_has_its_camera_set_again_and_nothing_is_told_twice(
     manager: Manager,
 ) -> None:
+    manager.slow_s = 0.05
     lost, told = threading.Event(), list[str]()
     with source_of(manager, lost, told, gain=500, exposure=8.2)() as source:
         frames = iter(source)

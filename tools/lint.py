@@ -18,7 +18,7 @@ from step import ROOT, Outcome, missing, show_step
 
 # The programs that pip installed beside this Python.
 BIN = Path(sys.executable).parent
-C_FOLDERS = ("firmware", "host/native", "tests/firmware", "tests/fuzz", "tests/shell")
+C_FOLDERS = ("firmware", "host/native", "tests/firmware", "tests/fuzz", "tests/shell", "tests/v4l2")
 C_SUFFIXES = (".c", ".h", ".cpp")
 DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
 NATIVE = ROOT / "host" / "native"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,11 +28,18 @@ class Wanted:
         return core_schema.no_info_wrap_validator_function(self.check, handler(source))
 
 
-def between(low: float, high: float, unit: str = "") -> Wanted:
-    """Annotates a number: whatever is wrong with it, the message gives the whole range."""
+def between(low: float, high: float, unit: str = "", words: tuple[str, ...] = ()) -> Wanted:
+    """Annotates a number: whatever is wrong with it, the message gives the whole range.
+
+    ``words``: texts that may stand there instead.
+    """
     wanted = f"{low:g} to {high:g} {unit}".rstrip()
+    if words:
+        wanted = f"{', '.join(json.dumps(word) for word in words)} or {wanted}"
 
     def check(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+        if isinstance(value, str) and value in words:
+            return value
         try:
             # Pydantic would take True and "3" for numbers.
             number = handler(value) if type(value) in (int, float) else math.nan

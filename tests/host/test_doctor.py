@@ -9,7 +9,6 @@ import threading
 import time
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from autopilot_peer import free_port, udp_peer
@@ -27,20 +26,14 @@ from chromadock.sources.live import Live
 
 
 class Camera(Grabber):
-    """Thirty pictures a second of VGA, said to be sixty; ``auto`` settings by number."""
+    """Thirty pictures a second of VGA, said to be sixty."""
 
     fps = 60.0
     monotonic = True
 
-    def __init__(self, auto: dict[int, float]) -> None:
-        self._auto = auto
-
     def grab(self) -> Shot | None:
         time.sleep(1 / 30)
         return Shot(np.zeros((480, 640, 3), np.uint8), time.monotonic() - 0.4)
-
-    def setting(self, number: int) -> float | None:
-        return self._auto.get(number)
 
     def close(self) -> None:
         """Nothing is open."""
@@ -50,20 +43,18 @@ def by_subject(findings: list[Finding]) -> dict[str, Finding]:
     return {finding.subject: finding for finding in findings}
 
 
-def test_a_camera_is_held_to_its_calibration_its_rate_and_its_locks(
+def test_a_camera_is_held_to_its_calibration_and_its_rate(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(eyes, "LOOK_S", 0.5)
-    auto = {cv2.CAP_PROP_AUTO_EXPOSURE: 3.0, cv2.CAP_PROP_AUTO_WB: 0.0}
-    monkeypatch.setattr(eyes, "open_source", lambda _: Live(lambda: Camera(auto), "camera 0"))
-    found = by_subject(list(eyes.camera("0", CameraModel.nominal(1280, 720))))
+    monkeypatch.setattr(eyes, "open_source", lambda _: Live(Camera, "camera 97"))
+    found = by_subject(list(eyes.camera("97", CameraModel.nominal(1280, 720))))
     assert found["camera"].level == "fault"
     assert "640x480 but calibrated for 1280x720" in found["camera"].words
     assert found["rate"].level == "warning" and "of 60 that are announced" in found["rate"].words
     assert found["delay"].level == "warning" and "a picture is 4" in found["delay"].words
-    assert found["exposure"].level == "warning" and "exposure_auto=1" in found["exposure"].words
-    assert found["white balance"] == Finding("ok", "white balance", "fixed")
-    assert found["focus"].level == "warning" and "cannot be asked for" in found["focus"].words
+    assert found["camera controls"].level == "warning"
+    assert "/dev/video97: its controls cannot be reached" in found["camera controls"].words
 
 
 def test_a_source_that_does_not_open_is_a_fault_in_its_own_words() -> None:

@@ -17,8 +17,10 @@ import av
 import cv2
 import numpy as np
 import pytest
+from camera_manager import EXPOSURE, Manager
 from picture_time import age_s
 
+from chromadock.controls.opening import CameraSettings
 from chromadock.errors import ChromadockError
 from chromadock.ros.mcap_bag import McapBag
 from chromadock.ros.topics import IMAGE
@@ -68,6 +70,21 @@ def test_an_rtsp_camera_of_30_frames_a_second_is_never_behind(rtsp: str) -> None
         assert source.dropped > len(ages)
     print(f"age of the picture, 99th percentile: {early:.3f} s at first, {late:.3f} s at last")
     assert early < OLD_S and late < OLD_S
+
+
+def test_the_camera_behind_an_rtsp_stream_is_set_by_its_manager(rtsp: str) -> None:
+    """BlueOS's manager knows the stream by another name of its computer."""
+    with Manager("/dev/video0", "/dev/video2") as manager:
+        endpoint = rtsp.replace("127.0.0.1", "192.168.2.2")
+        manager.streams = [
+            ("rtsp://192.168.2.2:8554/other", "/dev/video0"),
+            (endpoint, "/dev/video2"),
+        ]
+        camera = CameraSettings({"exposure": 8.2}, manager.url)
+        with open_source(rtsp, camera=camera) as source:
+            next(iter(source))
+            assert manager.value("/dev/video2", EXPOSURE) == 82
+        assert manager.value("/dev/video0", EXPOSURE) == 156
 
 
 def test_the_time_of_an_rtsp_picture_is_when_it_was_taken_but_for_the_encoder(rtsp: str) -> None:

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from chromadock.errors import ChromadockError
-from chromadock.vehicle.building import mounting_of
+from chromadock.vehicle.building import camera_settings_of, mounting_of
 from chromadock.vehicle.keys import MountingKeys, VehicleFile
-from chromadock.vehicle.manual import effective, page, shipped_file
+from chromadock.vehicle.manual import as_toml, effective, page, shipped_file
 from chromadock.vehicle.reading import read_vehicle, tables
 
 if sys.version_info >= (3, 11):
@@ -61,6 +61,16 @@ def test_what_is_left_out_has_its_default_and_what_is_set_goes_first(tmp_path: P
     }  # fmt: skip
 
 
+def test_a_cameras_settings_are_numbers_or_words(tmp_path: Path) -> None:
+    path = written(tmp_path / "v.toml", '[camera]\nexposure = 8\ngain = "lock"\nfocus = ""\n')
+    vehicle = read_vehicle(path, {"camera.white_balance": "auto"})
+    assert camera_settings_of(vehicle).wishes == {
+        "exposure": 8.0, "gain": "lock", "white_balance": "auto"
+    }  # fmt: skip
+    assert camera_settings_of(VehicleFile()).wishes == {}
+    assert read_vehicle(written(tmp_path / "again.toml", as_toml(vehicle))) == vehicle
+
+
 def test_files_that_are_named_are_sought_beside_the_file(tmp_path: Path) -> None:
     path = written(
         tmp_path / "v.toml", '[camera]\ncalibration = "cam.yaml"\n[dock]\nfile = "d.toml"'
@@ -77,6 +87,10 @@ def test_files_that_are_named_are_sought_beside_the_file(tmp_path: Path) -> None
         ("[camera]\nsorce = '0'", "unknown key camera.sorce"),
         ("[camera]\ndelay_s = -1", "camera.delay_s is -1: it must be 0 to 10 s"),
         ("[camera]\ndelay_s = true", "camera.delay_s is True: it must be 0 to 10 s"),
+        ("[camera]\nexposure = 'manual'", 'it must be "", "auto", "lock" or 0.1 to 1000 ms'),
+        ("[camera]\nexposure = 0", "camera.exposure is 0: it must be"),
+        ("[camera]\nwhite_balance = true", "camera.white_balance is True: it must be"),
+        ("[camera]\nfocus = nan", "camera.focus is nan: it must be"),
         ("[dock]\nmapping = 'octal'", "dock.mapping is 'octal': it must be one of ternary"),
         ("[mounting]\nyaw_deg = 270", "mounting.yaw_deg is 270: it must be -180 to 180 degrees"),
         ("[outputs]\nresults = 'json:a'", "outputs.results is 'json:a': it must be a list"),
@@ -146,6 +160,7 @@ def test_a_new_file_is_written_checked_and_shown_and_never_overwritten(tmp_path:
         ("[camera]\ncalibration = 'none.yaml'", "none.yaml: cannot read the camera file"),
         ("[dock]\nfile = 'none.toml'", "none.toml: cannot be read"),
         ("[dock]\ncolour = 'blue-ish'", "dock.colour"),
+        ("[camera]\nmanager = '192.168.2.2'", "camera.manager is '192.168.2.2': write http://"),
         ("[outputs]\nresults = ['pigeon:home']", "no such output"),
     ],
 )

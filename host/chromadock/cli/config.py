@@ -32,12 +32,14 @@ def init(path: _File) -> None:
 @config.command("check")
 def check(path: _File) -> None:
     """Say what is wrong in the file, or in those that it names."""
+    from chromadock.controls.opening import controls_of
     from chromadock.output.addresses import check_output
     from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
     from chromadock.vehicle.reading import read_vehicle
 
     settings = read_vehicle(path)
     detector_of(settings, camera_of(settings), dock_of(settings))
+    controls_of(settings.camera.source, settings.camera.manager)
     for text in outputs_of(settings):
         check_output(text)
     print(f"{path}: all keys are well")

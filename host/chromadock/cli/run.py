@@ -49,7 +49,13 @@ def run(
     from chromadock.output.run_setup import RunSetup
     from chromadock.sources import open_source
     from chromadock.toml_file import change
-    from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
+    from chromadock.vehicle.building import (
+        camera_of,
+        camera_settings_of,
+        detector_of,
+        dock_of,
+        outputs_of,
+    )
     from chromadock.vehicle.reading import read_vehicle
 
     changes = dict(change(text, "camera.source=1") for text in set_ or [])
@@ -64,6 +70,7 @@ def run(
         on_fault=report.fault,
         on_note=report.note,
         delay_s=settings.camera.delay_s,
+        camera=camera_settings_of(settings),
     )
     overlay = Path(settings.outputs.overlay) if settings.outputs.overlay else None
     outputs = outputs_of(settings)

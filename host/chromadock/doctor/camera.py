@@ -6,13 +6,12 @@ import math
 import time
 from collections.abc import Iterator
 
-import cv2
-
 from chromadock.camera import CameraModel
+from chromadock.controls.opening import CameraSettings, controls_of
+from chromadock.doctor.controls import ControlsCheck
 from chromadock.doctor.finding import Finding
 from chromadock.errors import ChromadockError
 from chromadock.sources import Source, open_source
-from chromadock.sources.live import Live
 
 LOOK_S = 3.0
 """How long a camera is watched."""
@@ -25,13 +24,6 @@ LOST_SHARE = 0.7
 
 OLD_S = 0.3
 """A picture that is older when it comes makes steering by it hard."""
-
-_LOCKS = {
-    "exposure": (cv2.CAP_PROP_AUTO_EXPOSURE, (1.0,), "exposure_auto=1"),
-    "white balance": (cv2.CAP_PROP_AUTO_WB, (0.0,), "white_balance_temperature_auto=0"),
-    "focus": (cv2.CAP_PROP_AUTOFOCUS, (0.0,), "focus_auto=0"),
-}
-"""OpenCV's property, its values on V4L2 that mean fixed, and the control's name for v4l2-ctl."""
 
 
 def calibration(camera: CameraModel | None) -> Finding:
@@ -52,18 +44,25 @@ def calibration(camera: CameraModel | None) -> Finding:
     )
 
 
-def camera(text: str, model: CameraModel | None) -> Iterator[Finding]:
-    """Whether the source ``text`` opens, how large its frames are, how many come, and how old."""
+def camera(
+    text: str, model: CameraModel | None, settings: CameraSettings | None = None
+) -> Iterator[Finding]:
+    """Whether the source ``text`` opens, how large its frames are, how many come, how old they are,
+    and what of the camera is fixed, all of it when the camera is set as for a run."""
+    settings = settings or CameraSettings()
     try:
+        controls = ControlsCheck(controls_of(text, settings.manager), settings.wishes)
         with open_source(text) as source:
+            if source.live:
+                controls.set_before_pictures()
             yield from _watched(source, model)
+            if source.live:
+                yield from controls.findings()
     except ChromadockError as error:
         yield Finding("fault", "camera", str(error))
 
 
 def _watched(source: Source, model: CameraModel | None) -> Iterator[Finding]:
-    # Asked before the thread that reads it has begun: no two may use a camera at once.
-    locks = list(_locks(source)) if isinstance(source, Live) else []
     ages_s: list[float] = []
     came, shape, begun_s = 0, (0, 0), time.monotonic()
     for frame in source:
@@ -82,7 +81,6 @@ def _watched(source: Source, model: CameraModel | None) -> Iterator[Finding]:
     if source.live:
         yield _rate((came - 1) / max(time.monotonic() - begun_s, 1e-3), source.fps)
         yield _age(sorted(ages_s)[len(ages_s) // 2])
-    yield from locks
 
 
 def _size(wide: int, high: int, model: CameraModel | None) -> Finding:
@@ -119,24 +117,3 @@ def _age(age_s: float) -> Finding:
             "warning", "delay", f"{words}: lower the encoder's buffer and its key frames"
         )
     return Finding("ok", "delay", words)
-
-
-def _locks(source: Live) -> Iterator[Finding]:
-    """Whether exposure, white balance and focus are fixed, as the driver has them now."""
-    for what, (number, fixed, control) in _LOCKS.items():
-        value = source.setting(number)
-        if value is None:
-            yield Finding(
-                "warning",
-                what,
-                "cannot be asked for here: see in the camera's own settings that it is fixed",
-            )
-        elif value in fixed:
-            yield Finding("ok", what, "fixed")
-        elif value >= 0:
-            yield Finding(
-                "warning",
-                what,
-                f"automatic: fix it with `v4l2-ctl --set-ctrl={control}`, for it changes the very "
-                "colour, or the scale, that is measured",
-            )

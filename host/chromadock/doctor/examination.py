@@ -13,7 +13,13 @@ from chromadock.doctor.finding import Finding
 from chromadock.doctor.ports import dock, serial_ports
 from chromadock.errors import ChromadockError
 from chromadock.output.addresses import check_output
-from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
+from chromadock.vehicle.building import (
+    camera_of,
+    camera_settings_of,
+    detector_of,
+    dock_of,
+    outputs_of,
+)
 from chromadock.vehicle.keys import VehicleFile
 
 DOCK_S = 2.0
@@ -40,7 +46,7 @@ def examined(vehicle: VehicleFile, dock_port: str | None, look_for_dock: bool) -
         yield Finding("ok", "settings", "dock, colours and outputs are well")
     except ChromadockError as error:
         yield Finding("fault", "settings", str(error))
-    yield from camera(vehicle.camera.source, model)
+    yield from camera(vehicle.camera.source, model, camera_settings_of(vehicle))
     yield from serial_ports()
     if look_for_dock:
         yield dock(dock_port, DOCK_S)

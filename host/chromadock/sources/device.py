@@ -42,10 +42,6 @@ class Device(Grabber):
             stamp_s = told_ms / 1000 if told_ms > 0 else None
         return Shot(np.asarray(image, np.uint8), stamp_s)
 
-    def setting(self, number: int) -> float | None:
-        """As the driver has it now; negative where it has no such setting."""
-        return float(self._capture.get(number)) if self.monotonic else None
-
     def close(self) -> None:
         """Let go of the device."""
         self._capture.release()

@@ -36,10 +36,6 @@ class Grabber(ABC):
     def grab(self) -> Shot | None:
         """Wait for the next picture; None where no more will come."""
 
-    def setting(self, number: int) -> float | None:
-        """A setting of the camera's, by its number in OpenCV; None where it cannot be asked for."""
-        return None
-
     @abstractmethod
     def close(self) -> None:
         """Let go of the camera or the connection."""

@@ -69,10 +69,6 @@ class Live(Source):
         """This moment on the clock of the frames' ``time_s``."""
         return time.monotonic() - self._start_s
 
-    def setting(self, number: int) -> float | None:
-        """See ``Grabber``."""
-        return self._grabber.setting(number)
-
     def __iter__(self) -> Iterator[Frame]:
         if self._reader is None:
             self._reader = threading.Thread(target=self._read, name=self._name, daemon=True)

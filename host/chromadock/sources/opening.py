@@ -11,11 +11,14 @@ from functools import partial
 from pathlib import Path
 
 from chromadock.choices import DEFAULT_FPS, LONGEST_DELAY_S
+from chromadock.controls.keeper import Keeper
+from chromadock.controls.opening import CameraSettings, cannot_be_set, keeper_of
 from chromadock.errors import ChromadockError
 from chromadock.sources.address import without_secrets
 from chromadock.sources.bag_kind import is_bag, split_topic
 from chromadock.sources.base import OnFault, Source, ignore
 from chromadock.sources.device import open_device, open_gstreamer
+from chromadock.sources.kept import kept
 from chromadock.sources.kinds import check_readable
 from chromadock.sources.live import Live
 from chromadock.sources.order import natural_key
@@ -24,6 +27,9 @@ from chromadock.sources.urls import open_url
 from chromadock.sources.video_opening import open_video
 
 _KINDS = "give a picture, a folder of pictures, a video, a recording, a camera index or a URL"
+_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+://")
+_PIPELINE = "pipeline"
+"""Pipelines are called so in messages, for they may hold passwords."""
 
 
 def open_source(
@@ -32,6 +38,7 @@ def open_source(
     on_fault: OnFault = ignore,
     on_note: OnFault = ignore,
     delay_s: float = 0.0,
+    camera: CameraSettings | None = None,
 ) -> Source:
     """Open what ``text`` names.
 
@@ -51,6 +58,9 @@ def open_source(
         goes away or is back, then by its thread.
     delay_s
         From capture to arrival of a live source's pictures, seconds: see ``CaptureTime``.
+    camera
+        What a live source's camera is set to, each time that it is opened; what it does not follow
+        goes to ``on_note``, then by another thread.
 
     Raises
     ------
@@ -64,15 +74,34 @@ def open_source(
             f"--delay is {delay_s:g}: give the seconds from capture to arrival, "
             f"0 to {LONGEST_DELAY_S:g}"
         )
-    if text.isascii() and text.isdigit():
-        name = f"camera {text}"
-        return Live(partial(open_device, int(text), name), name, on_note, delay_s)
+    camera = camera or CameraSettings()
+    name = _live_name(text)
+    keeper = keeper_of(text, name, camera, on_note)
+    source = _opened(text, fps, on_fault, on_note, delay_s, keeper)
+    if camera.wishes and (keeper is None or not source.live):
+        shown = name if source.live else without_secrets(text)
+        on_note(cannot_be_set(shown, camera.wishes, source.live))
+    return source
+
+
+def _opened(
+    text: str,
+    fps: float,
+    on_fault: OnFault,
+    on_note: OnFault,
+    delay_s: float,
+    keeper: Keeper | None,
+) -> Source:
+    """The source, by what kind it is of."""
+    if _is_index(text):
+        name = _live_name(text)
+        return Live(kept(partial(open_device, int(text), name), keeper), name, on_note, delay_s)
     text, topic = split_topic(text)
     path = Path(text)
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
-        live = _live(text, on_fault, on_note, delay_s)
+        live = _live(text, on_fault, on_note, delay_s, keeper)
         return live or _not_a_path(text, fps, on_fault, on_note, error)
     if is_bag(path):
         from chromadock.sources.bag import open_bag  # takes long to load
@@ -83,16 +112,30 @@ def open_source(
     if stat.S_ISDIR(mode):
         return _folder(path, fps, on_fault, on_note)
     if stat.S_ISCHR(mode):
-        return Live(partial(open_device, text, text), text, on_note, delay_s)
+        return Live(kept(partial(open_device, text, text), keeper), text, on_note, delay_s)
     return _file(path, fps, on_fault, on_note)
 
 
-def _live(text: str, on_fault: OnFault, on_note: OnFault, delay_s: float) -> Source | None:
+def _is_index(text: str) -> bool:
+    """Whether a camera is named by its number."""
+    return text.isascii() and text.isdigit()
+
+
+def _live_name(text: str) -> str:
+    """What a camera, pipeline or stream is called in messages."""
+    if _is_index(text):
+        return f"camera {text}"
+    return _PIPELINE if "!" in text and not _URL.match(text) else without_secrets(text)
+
+
+def _live(
+    text: str, on_fault: OnFault, on_note: OnFault, delay_s: float, keeper: Keeper | None
+) -> Source | None:
     """What is no path and delivers frames by itself."""
-    if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
-        return open_url(text, on_fault, on_note, delay_s)
+    if _URL.match(text):
+        return open_url(text, on_fault, on_note, delay_s, keeper)
     if "!" in text:
-        return Live(partial(open_gstreamer, text), "pipeline", on_note, delay_s)
+        return Live(kept(partial(open_gstreamer, text), keeper), _PIPELINE, on_note, delay_s)
     return None
 
 

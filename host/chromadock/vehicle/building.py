@@ -6,6 +6,8 @@ import cv2
 import numpy as np
 
 from chromadock.camera import CameraModel
+from chromadock.controls.features import FEATURES
+from chromadock.controls.opening import CameraSettings
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
 from chromadock.marker_colour import MarkerColour
@@ -23,6 +25,14 @@ def camera_of(vehicle: VehicleFile) -> CameraModel | None:
     """
     calibration = vehicle.camera.calibration
     return CameraModel.from_yaml(calibration) if calibration else None
+
+
+def camera_settings_of(vehicle: VehicleFile) -> CameraSettings:
+    """What the camera is to be set to."""
+    wishes = {feature.key: getattr(vehicle.camera, feature.key) for feature in FEATURES}
+    return CameraSettings(
+        {key: wish for key, wish in wishes.items() if wish != ""}, vehicle.camera.manager
+    )
 
 
 def dock_of(vehicle: VehicleFile, confirmed: bool = False) -> DockGeometry:

@@ -19,6 +19,7 @@ from chromadock.choices import (
     MAPPINGS,
     METHODS,
 )
+from chromadock.controls.applying import WORDS, Wish
 from chromadock.validation import allowed, between
 
 TEXT_IN_QUOTES = "a text in quotes"
@@ -50,6 +51,30 @@ class CameraKeys(_Table):
         0.0,
         description="From capture to arrival of a picture at best, which no stamp tells: an "
         "encoder's time, say.",
+    )
+    exposure: Annotated[Wish, between(0.1, 1000, "ms", WORDS)] = Field(
+        "",
+        description='Its time: a number fixes it, "auto" leaves it to the camera, "lock" lets it '
+        "settle for two seconds and then fixes it. Empty, as for the next three: it stays as the "
+        "camera has it, and is not set again when the camera has lost power. Where it is set, the "
+        "camera may not lower its frame rate in dim light.",
+    )
+    gain: Annotated[Wish, between(0, 65535, "in the driver's unit", WORDS)] = Field(
+        "", description="Of the sensor, likewise."
+    )
+    white_balance: Annotated[Wish, between(1000, 20000, "K", WORDS)] = Field(
+        "",
+        description="Likewise. An automatic one removes the very hue that is measured.",
+    )
+    focus: Annotated[Wish, between(0, 65535, "in the driver's unit", WORDS)] = Field(
+        "", description="Likewise. The calibration holds for one focus."
+    )
+    manager: Text = Field(
+        "",
+        description="Who sets these of a stream's camera: BlueOS's camera manager, such as "
+        "http://192.168.2.2:6020, with ?device=/dev/video2 where it has several and the stream is "
+        "none of its own. Empty: port 6020 of the computer that an rtsp:// source comes from. A "
+        "camera of this computer needs none.",
     )
 
 

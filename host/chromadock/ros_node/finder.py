@@ -69,7 +69,6 @@ class Finder:
         camera = camera_of(settings.vehicle)
         # Without a camera yet, to refuse at the start what cannot be looked for.
         self._detector = detector_of(settings.vehicle, camera, self._dock)
-        self.calibrated_by_file = camera is not None
         self._camera = camera
         self._fault: str | None = None
         if camera is None:

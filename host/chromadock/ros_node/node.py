@@ -13,12 +13,9 @@ from typing import Any
 import rclpy
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.signals import SignalHandlerOptions
 
 from chromadock.errors import ChromadockError
-from chromadock.ros_node.filled import message_class
 from chromadock.ros_node.finder import Finder, TopicNames
 from chromadock.ros_node.health import Health
 from chromadock.ros_node.inbox import MOST_ORIENTATIONS, Inbox
@@ -30,6 +27,7 @@ from chromadock.ros_node.parameters import (
     read_parameters,
 )
 from chromadock.ros_node.publishing import Publishers
+from chromadock.ros_node.subscribing import Subscriptions, Wanted
 from chromadock.sources.ros_pictures import COMPRESSED, IMAGE
 from chromadock.text import one_line
 from chromadock.vehicle.keys import CameraKeys, OutputKeys
@@ -38,13 +36,6 @@ NAME = "chromadock"
 
 _LOOK_S = 0.1
 """So often signals are heard and silence is noticed."""
-
-_OVERRIDABLE = (
-    QoSPolicyKind.HISTORY,
-    QoSPolicyKind.DEPTH,
-    QoSPolicyKind.RELIABILITY,
-    QoSPolicyKind.DURABILITY,
-)
 
 
 def run(arguments: Sequence[str], vehicle: Path | None) -> None:
@@ -99,26 +90,25 @@ def _run(node: Any, settings: NodeSettings) -> None:
     inbox = Inbox()
     topics = _names(node, settings)
     finder = Finder(settings, topics, log.warning)
-    _subscribe(node, settings, topics, inbox, finder.calibrated_by_file)
+    heard = Subscriptions(node, _wanted(node, settings, topics, inbox), time.monotonic())
     told = [topic for topic in KINDS if topic != TF or settings.node.publish_tf]
     publishers = Publishers(node, told, log.warning)
     health = Health(topics.image, log.warning, time.monotonic())
     by = settings.vehicle.camera.calibration or f"CameraInfo on {topics.camera_info}"
     log.info(f"looking for the dock in the pictures on {topics.image}, by {by}")
-    if (settings.vehicle.camera.source, settings.vehicle.outputs) != (
-        CameraKeys().source,
-        OutputKeys(),
-    ):
+    unused = settings.vehicle.camera.source, settings.vehicle.outputs
+    if unused != (CameraKeys().source, OutputKeys()):
         log.warning(
             f"{settings.node.vehicle}: camera.source and outputs are not used here: pictures come "
             "and results go by topics; `chromadock run` uses them"
         )
     with _asked_to_stop() as stop, _spinning(node, inbox):
         while not stop:
+            heard.renew(time.monotonic())
             arrived = inbox.take(_LOOK_S)
             for message in arrived.orientations:
                 finder.orientation(message)
-            if arrived.camera_info is not None and not finder.calibrated_by_file:
+            if arrived.camera_info is not None:
                 finder.camera_info(arrived.camera_info)
             if arrived.picture is not None:
                 seen = finder.picture(arrived.picture, _now_ns(node))
@@ -132,33 +122,27 @@ def _run(node: Any, settings: NodeSettings) -> None:
 
 
 def _names(node: Any, settings: NodeSettings) -> TopicNames:
-    """Of the topics after remapping; as in ROS's image_transport it is the picture's plain topic
-    that is remapped, and that of compressed ones is below it."""
-    image = node.resolve_topic_name("image")
+    """Of the topics after remapping, by the rules of ROS's image_transport: the plain pictures'
+    topic is remapped, that of compressed ones is below it, and CameraInfo is beside it unless it is
+    remapped itself."""
+    image, info = (node.resolve_topic_name(name) for name in ("image", "camera_info"))
+    if info == node.resolve_topic_name("camera_info", only_expand=True):
+        info = f"{image.rpartition('/')[0]}/camera_info"
     if settings.node.image_transport == "compressed":
         image += "/compressed"
-    return TopicNames(image, node.resolve_topic_name("camera_info"))
+    return TopicNames(image, info)
 
 
-def _subscribe(
-    node: Any, settings: NodeSettings, topics: TopicNames, inbox: Inbox, calibrated: bool
-) -> None:
-    """Best effort, as sensors publish, which hears reliable publishers too; of pictures the newest
-    wins.  Parameters ``qos_overrides...`` may choose otherwise."""
-    compressed = settings.node.image_transport == "compressed"
-    wanted = [(COMPRESSED if compressed else IMAGE, topics.image, inbox.picture, 1)]
-    if not calibrated:
-        wanted.append(("sensor_msgs/msg/CameraInfo", topics.camera_info, inbox.camera_info, 1))
+def _wanted(node: Any, settings: NodeSettings, topics: TopicNames, inbox: Inbox) -> list[Wanted]:
+    """The topics that are heard; no CameraInfo where a file has the calibration."""
+    kind = COMPRESSED if settings.node.image_transport == "compressed" else IMAGE
     imu = node.resolve_topic_name("imu")
-    wanted.append(("sensor_msgs/msg/Imu", imu, inbox.orientation, MOST_ORIENTATIONS))
-    for kind, topic, take, depth in wanted:
-        node.create_subscription(
-            message_class(kind),
-            topic,
-            take,
-            QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
-            qos_overriding_options=QoSOverridingOptions(_OVERRIDABLE),
-        )
+    wanted = [
+        Wanted(topics.camera_info, "sensor_msgs/msg/CameraInfo", inbox.camera_info, 1),
+        Wanted(imu, "sensor_msgs/msg/Imu", inbox.orientation, MOST_ORIENTATIONS),
+        Wanted(topics.image, kind, inbox.picture, 1),
+    ]
+    return wanted[1:] if settings.vehicle.camera.calibration else wanted
 
 
 def _now_ns(node: Any) -> int:

@@ -67,7 +67,7 @@ class Health:
         self._log_change(complaint, now_s)
         fields = diagnostics(
             seen.detection if seen else None,
-            self._age_s if seen else None,
+            self._age_s if seen and seen.detection else None,
             dropped,
             stamp_ns,
             frame_id="",

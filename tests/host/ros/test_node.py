@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 import signal
 import subprocess
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +15,7 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+import yaml
 from ros_processes import PYTHON, WAIT_S, Message, Node, Peer, environment, running, stamp_ns
 from simulation import chromadock
 
@@ -21,6 +25,7 @@ from chromadock.rotation import matrix_from_quaternion
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMETERS = ROOT / "ros2" / "chromadock_ros" / "config" / "chromadock.yaml"
+PAGE = ROOT / "docs" / "ros.md"
 COUNT = 10
 FRAME_ID = "front_optical_frame"
 START_NS = 1_760_000_000_123_456_789
@@ -169,12 +174,15 @@ def test_poses_are_those_of_the_simulator(dive: Dive, told: dict[str, Any]) -> N
         assert abs(error[2]) < 5 * np.sqrt(covariance[2, 2])
 
 
-def test_nav2_drives_into_the_dock_with_its_own_defaults(told: dict[str, Any]) -> None:
-    """Nav2's SimpleChargingDock turns a detected pose by roll -1.57, pitch 1.57 and drives along
-    +x: that is the dock's z."""
-    sin, cos = np.sin(1.57), np.cos(1.57)
-    about_y = np.array([[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]])
-    about_x = np.array([[1, 0, 0], [0, cos, sin], [0, -sin, cos]])  # by -1.57
+def test_nav2_drives_into_the_dock_by_the_parameters_of_the_page(told: dict[str, Any]) -> None:
+    """SimpleChargingDock turns a detected pose by setRPY(roll, pitch, yaw), in ROS 2 Kilted and
+    before by setEuler, which is the same without a yaw, and drives along +x: the dock's z."""
+    [block] = re.findall(r"```yaml\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    keys = yaml.safe_load(block)["docking_server"]["ros__parameters"]["chromadock"]
+    roll, pitch, yaw = (keys[f"external_detection_rotation_{a}"] for a in ("roll", "pitch", "yaw"))
+    assert (roll, pitch, yaw) == (-1.57, 1.57, 0.0)  # its defaults
+    about_x = cv2.Rodrigues(np.array([roll, 0.0, 0.0]))[0]
+    about_y = cv2.Rodrigues(np.array([0.0, pitch, 0.0]))[0]
     for pose, nav2 in zip(of(POSE, told["dock"]), of(NAV2, told["dock"]), strict=True):
         R_camera_dock, R_detected = (
             matrix_from_quaternion([q[axis] for axis in "wxyz"])
@@ -232,6 +240,29 @@ def test_the_vehicles_file_and_a_file_of_parameters_will_do(dive: Dive, tmp_path
         assert {pose["header"]["frame_id"] for pose in of(POSE, peer.heard)} == {"eye"}
         assert "camera.source and outputs are not used here" in node.said
         assert node.end(signal.SIGINT) == 0
+
+
+def commands() -> list[str]:
+    """The node's of the page."""
+    blocks = re.findall(r"```\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    lines = [line for block in blocks for line in block.splitlines()]
+    return [line for line in lines if line.startswith(".venv/bin/chromadock ros ")]
+
+
+@pytest.mark.parametrize("command", commands())
+def test_the_commands_of_the_page_run(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    vehicle = tmp_path / "vehicle.toml"
+    assert chromadock(capsys, "config", "init", vehicle).status == 0
+    _, _, *words = shlex.split(command, comments=True)
+    beside = {"vehicle.toml": vehicle, str(PARAMETERS.relative_to(ROOT)): PARAMETERS}
+    node = Node(tmp_path, *(beside.get(word, word) for word in words))
+    end_s = time.monotonic() + WAIT_S
+    while "looking for the dock in the pictures on /" not in node.said:
+        assert node.process.poll() is None and time.monotonic() < end_s, node.said
+        time.sleep(0.05)
+    assert node.end() == 0
 
 
 @pytest.mark.parametrize(

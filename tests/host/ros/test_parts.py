@@ -26,8 +26,8 @@ from chromadock.ros_node.finder import Finder, Seen, TopicNames
 from chromadock.ros_node.health import GRACE_S, PERIOD_S, SILENCE_S, Health
 from chromadock.ros_node.imu import Attitudes
 from chromadock.ros_node.inbox import Inbox
-from chromadock.ros_node.outputs import NAV2_POSE, POSE, TF, outputs
-from chromadock.ros_node.parameters import effective, read_parameters
+from chromadock.ros_node.outputs import KINDS, NAV2_POSE, POSE, TF, outputs
+from chromadock.ros_node.parameters import TAKEN, NodeKeys, effective, read_parameters
 from chromadock.sources import Frame
 from chromadock.track.attitude import Attitude
 
@@ -323,6 +323,17 @@ def test_the_file_of_parameters_has_each_at_its_default() -> None:
             flat[name] = value
     defaults = effective(read_parameters({"mounting.yaw_deg": 0.0}))
     assert flat == {name: v for name, v in defaults.items() if name != "vehicle"}
+
+
+def test_the_page_names_every_topic_and_parameter_with_its_type_or_default() -> None:
+    page = (ROS2.parents[1] / "docs" / "ros.md").read_text()
+    for topic, kind in KINDS.items():
+        assert f"| `{topic}` | {kind.replace('/msg/', '/')} |" in page
+    for name, field in NodeKeys.model_fields.items():
+        default = f"`{str(field.default).lower()}`" if field.default else "[^`]*"
+        assert re.search(rf"\| `{name}` \| ?{default} ?\|", page), name
+    for table in TAKEN:
+        assert f"`{table}." in page
 
 
 def test_the_launch_file_starts_the_command_with_its_arguments(

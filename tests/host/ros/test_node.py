@@ -7,6 +7,7 @@ import re
 import shlex
 import signal
 import subprocess
+import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -26,7 +27,7 @@ from chromadock.rotation import matrix_from_quaternion
 ROOT = Path(__file__).resolve().parents[3]
 PARAMETERS = ROOT / "ros2" / "chromadock_ros" / "config" / "chromadock.yaml"
 PAGE = ROOT / "docs" / "ros.md"
-COUNT = 10
+COUNT = 8
 FRAME_ID = "front_optical_frame"
 START_NS = 1_760_000_000_123_456_789
 POSE, NAV2, DIAGNOSTICS = "/chromadock/pose", "/detected_dock_pose", "/diagnostics"
@@ -67,7 +68,7 @@ def dive(tmp_path_factory: pytest.TempPathFactory) -> Dive:
         tracked = track.state == "tracking" and track.age_s == 0
         assert tracked or k <= dive.locked
         dive.locked = min(dive.locked, k) if tracked else dive.locked
-    assert 0 < dive.locked < COUNT - 5
+    assert 0 < dive.locked < COUNT - 4
     return dive
 
 
@@ -95,7 +96,7 @@ def play(peer: Peer, dive: Dive, **more: Any) -> None:
     locked = False
     for k, stamp in enumerate(dive.stamps_ns):
         peer.publish(dive.order(k, **more))
-        came = posed(peer, stamp, WAIT_S if locked else 0.5)
+        came = posed(peer, stamp, WAIT_S if locked else 0.4)
         # The picture that comes with the first CameraInfo may be taken before it.
         assert came or (not locked and k <= dive.locked + 1), f"no pose of frame {k}"
         assert not came or k >= dive.locked, f"a pose of frame {k}"
@@ -137,7 +138,7 @@ def told(dive: Dive, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]
         part("not calibrated")
         play(peer, dive, camera_info=good)
         part("dock")
-        for k in range(3):
+        for k in range(2):
             later = {"image": str(water), "stamp_ns": START_NS + (20 + k) * 10**8}
             peer.publish(dive.order(0, camera_info=good) | later)
             peer.wait(lambda m: m["topic"] in (POSE, NAV2), 0.3)
@@ -249,26 +250,26 @@ def commands() -> list[str]:
     return [line for line in lines if line.startswith(".venv/bin/chromadock ros ")]
 
 
-@pytest.mark.parametrize("command", commands())
-def test_the_commands_of_the_page_run(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_commands_of_the_page_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     vehicle = tmp_path / "vehicle.toml"
     assert chromadock(capsys, "config", "init", vehicle).status == 0
-    _, _, *words = shlex.split(command, comments=True)
     beside = {"vehicle.toml": vehicle, str(PARAMETERS.relative_to(ROOT)): PARAMETERS}
-    node = Node(tmp_path, *(beside.get(word, word) for word in words))
+    nodes = []
+    for k, command in enumerate(commands()):
+        _, _, *words = shlex.split(command)
+        (tmp_path / str(k)).mkdir()
+        nodes.append(Node(tmp_path / str(k), *(beside.get(word, word) for word in words)))
     end_s = time.monotonic() + WAIT_S
-    while "looking for the dock in the pictures on /" not in node.said:
-        assert node.process.poll() is None and time.monotonic() < end_s, node.said
-        time.sleep(0.05)
-    assert node.end() == 0
+    for node in nodes:
+        while "looking for the dock in the pictures on /" not in node.said:
+            assert node.process.poll() is None and time.monotonic() < end_s, node.said
+            time.sleep(0.05)
+    assert [node.end() for node in nodes] == [0, 0, 0]
 
 
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["-p", "dock.colr:=white"], "parameter dock.colr: there is none of that name"),
         (["-p", "dock.mapping:=nope"], "dock.mapping is 'nope': it must be one of ternary"),
         (["--bogus"], "--ros-args: ['--bogus']: write them as"),
     ],
@@ -301,7 +302,10 @@ print(message.header.stamp.sec, message.header.stamp.nanosec, message.header.fra
     assert done.stdout == wanted, done.stderr
 
 
-def test_without_ros_a_line_says_how_to_get_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_ros_a_line_says_how_to_get_it(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "rclpy", None)
     done = chromadock(capsys, "ros", "--ros-args", "-r", "image:=/camera/image_raw")
     assert done.status == 2
-    assert "ROS 2 cannot be loaded (No module named 'rclpy'): source /opt/ros/" in done.err
+    assert re.search(r"ROS 2 cannot be loaded \(.*rclpy.*\): source /opt/ros/", done.err)

@@ -88,7 +88,7 @@ class Peer:
 
 
 class Node:
-    """``chromadock ros`` with arguments."""
+    """``chromadock ros`` with arguments; a context manager that leaves no process behind."""
 
     def __init__(self, folder: Path, *arguments: object) -> None:
         self._said = folder / "said.txt"
@@ -110,20 +110,25 @@ class Node:
         self.process.send_signal(number)
         return self.process.wait(WAIT_S)
 
+    def __enter__(self) -> Node:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.process.wait()
+
 
 @contextlib.contextmanager
 def running(
     folder: Path, *arguments: object, reliability: str = "RELIABLE"
 ) -> Iterator[tuple[Node, Peer]]:
     """Both, after they have found each other."""
-    node, peer = Node(folder, *arguments), Peer(folder, reliability)
-    try:
+    with (
+        Node(folder, *arguments) as node,
+        contextlib.closing(Peer(folder, reliability)) as peer,
+    ):
         assert peer.wait(lambda m: m["topic"] == "ready"), node.said
         yield node, peer
-    finally:
-        peer.close()
-        node.process.kill()
-        node.process.wait()
 
 
 def stamp_ns(message: Message) -> int:

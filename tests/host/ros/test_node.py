@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 import shlex
@@ -96,9 +97,9 @@ def play(peer: Peer, dive: Dive, **more: Any) -> None:
     locked = False
     for k, stamp in enumerate(dive.stamps_ns):
         peer.publish(dive.order(k, **more))
-        came = posed(peer, stamp, WAIT_S if locked else 0.4)
-        # The picture that comes with the first CameraInfo may be taken before it.
-        assert came or (not locked and k <= dive.locked + 1), f"no pose of frame {k}"
+        came = posed(peer, stamp, WAIT_S if locked else 0.5)
+        # The first picture may be taken before its CameraInfo, and one may be dropped.
+        assert came or (not locked and k <= dive.locked + 2), f"no pose of frame {k}"
         assert not came or k >= dive.locked, f"a pose of frame {k}"
         locked = came
 
@@ -159,7 +160,7 @@ def test_each_frame_of_the_dock_brings_a_pose_with_its_stamp(
     for part in ("dock", "again"):
         for topic in (POSE, NAV2):
             poses = of(topic, told[part])
-            assert len(poses) >= COUNT - dive.locked - 2
+            assert len(poses) >= COUNT - dive.locked - 3
             assert [stamp_ns(pose) for pose in poses] == dive.stamps_ns[-len(poses) :]
             assert {pose["header"]["frame_id"] for pose in poses} == {FRAME_ID}
 
@@ -254,17 +255,19 @@ def test_the_commands_of_the_page_run(tmp_path: Path, capsys: pytest.CaptureFixt
     vehicle = tmp_path / "vehicle.toml"
     assert chromadock(capsys, "config", "init", vehicle).status == 0
     beside = {"vehicle.toml": vehicle, str(PARAMETERS.relative_to(ROOT)): PARAMETERS}
-    nodes = []
-    for k, command in enumerate(commands()):
-        _, _, *words = shlex.split(command)
-        (tmp_path / str(k)).mkdir()
-        nodes.append(Node(tmp_path / str(k), *(beside.get(word, word) for word in words)))
-    end_s = time.monotonic() + WAIT_S
-    for node in nodes:
-        while "looking for the dock in the pictures on /" not in node.said:
-            assert node.process.poll() is None and time.monotonic() < end_s, node.said
-            time.sleep(0.05)
-    assert [node.end() for node in nodes] == [0, 0, 0]
+    with contextlib.ExitStack() as stack:
+        nodes = []
+        for k, command in enumerate(commands()):
+            _, _, *words = shlex.split(command)
+            (tmp_path / str(k)).mkdir()
+            node = Node(tmp_path / str(k), *(beside.get(word, word) for word in words))
+            nodes.append(stack.enter_context(node))
+        end_s = time.monotonic() + WAIT_S
+        for node in nodes:
+            while "looking for the dock in the pictures on /" not in node.said:
+                assert node.process.poll() is None and time.monotonic() < end_s, node.said
+                time.sleep(0.05)
+        assert [node.end() for node in nodes] == [0, 0, 0]
 
 
 @pytest.mark.parametrize(
@@ -275,8 +278,8 @@ def test_the_commands_of_the_page_run(tmp_path: Path, capsys: pytest.CaptureFixt
     ],
 )
 def test_a_slip_in_the_arguments_is_a_line(arguments: list[str], line: str, tmp_path: Path) -> None:
-    node = Node(tmp_path, "--ros-args", *arguments)
-    assert node.process.wait(20) == 2
+    with Node(tmp_path, "--ros-args", *arguments) as node:
+        assert node.process.wait(WAIT_S) == 2
     assert node.said.count("chromadock: error: ") == 1 and line in node.said
     assert "Traceback" not in node.said
 

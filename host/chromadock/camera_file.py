@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -46,19 +47,31 @@ def read_camera_file(path: Path) -> Calibration:
     ChromadockError
         One line with the file, the key, what is wrong and the mend.
     """
-    content = _camera_of(path, _load(path))
+    return calibration_of(_camera_of(path, _load(path)), str(path))
+
+
+def calibration_of(content: Mapping[str, Any], name: str) -> Calibration:
+    """The same from the keys of a camera file or of a CameraInfo message, in lower case.
+
+    ``name`` says in messages where they are from.
+
+    Raises
+    ------
+    ChromadockError
+        One line with the name, the key, what is wrong and the mend.
+    """
     fault = foreign_keys(content)
     lens, unknown = lens_told(content)
     if fault or unknown:
-        raise ChromadockError(f"{path}: {fault or unknown}")
+        raise ChromadockError(f"{name}: {fault or unknown}")
     try:
         read = layout_of(content).model_validate(content)
     except ValidationError as error:
-        raise ChromadockError(f"{path}: {_explain(error)}") from None
+        raise ChromadockError(f"{name}: {_explain(error)}") from None
     full = read.full(lens)
     calibration = _aside(full) or windowed(full, read.roi or Roi(), read.binning)
     if isinstance(calibration, str):
-        raise ChromadockError(f"{path}: {calibration}")
+        raise ChromadockError(f"{name}: {calibration}")
     return calibration
 
 

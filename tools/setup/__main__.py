@@ -54,6 +54,7 @@ def set_up_tests() -> None:
     environment.install_opencv4()
     environment.install_mavproxy()
     environment.install_mavsdk(unavailable)
+    environment.make_ros(unavailable)
     debian.install_test_packages(unavailable)
     native_tests.set_up(unavailable)
     unavailable.save()

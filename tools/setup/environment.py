@@ -17,6 +17,7 @@ DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
 OPENCV4 = BUILD / "opencv4"
 MAVPROXY = BUILD / "mavproxy"
 MAVSDK = BUILD / "mavsdk"
+ROS = BUILD / "ros"
 PEERS = BUILD / "bench"
 DIALECT = HOST / "chromadock" / "dialect.py"
 NATIVE = [HOST / "native", HOST / "build_native.py"]
@@ -96,6 +97,28 @@ def install_mavsdk(unavailable: Unavailable) -> None:
         install_beside(MAVSDK, "MAVSDK")
     except SetupError as error:
         unavailable.add("mavsdk", str(error))
+
+
+def make_ros(unavailable: Unavailable) -> None:
+    """Make an environment with ROS 2's client library, for the tests of the node; there is not a
+    wheel of it for every computer.
+
+    A whole environment, since its libraries are sought by Python's prefix.  Packages without those
+    they need: numpy and PyYAML are in .venv, which the tests have it see.
+    """
+    requirements = TOOLS / "requirements-ros.txt"
+    stamp = Stamp(ROS, "ros", [requirements, f"{sys.version_info[:2]}", str(ROOT)])
+    if stamp.fresh():
+        return
+    try:
+        with step("ROS 2 in build/ros"):
+            run([sys.executable, "-m", "venv", "--clear", ROS], "python3 -m venv")
+            pip: list[str | Path] = [ROS / "bin" / "python", "-m", "pip", "install", "-q"]
+            run([*pip, "--no-deps", "-r", requirements], "pip install")
+        stamp.set()
+    except SetupError as error:
+        shutil.rmtree(ROS, ignore_errors=True)
+        unavailable.add("ros", str(error))
 
 
 def install_peers() -> None:

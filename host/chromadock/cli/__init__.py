@@ -28,6 +28,7 @@ from chromadock.cli.exit_status import (
     EXIT_TERMINATED,
 )
 from chromadock.cli.replay import replay
+from chromadock.cli.ros import RosCommand, ros
 from chromadock.cli.run import run
 from chromadock.cli.simulate import simulate
 from chromadock.errors import ChromadockError
@@ -50,6 +51,7 @@ app.command("demo")(demo)
 app.command("doctor")(doctor)
 app.command("evaluate")(evaluate)
 app.command("replay")(replay)
+app.command("ros", cls=RosCommand)(ros)
 app.command("run")(run)
 app.command("simulate")(simulate)
 app.add_typer(config, name="config")

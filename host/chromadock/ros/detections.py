@@ -7,35 +7,36 @@ from collections.abc import Sequence
 from chromadock.results.detection import Blob, Detection, Point
 from chromadock.results.pose import Pose
 from chromadock.ros.fields import Fields
-from chromadock.ros.header import DOCK_FRAME, header
+from chromadock.ros.header import CAMERA_FRAME, DOCK_FRAME, header
 from chromadock.ros.pose import pose_with_covariance
 
 MARKER = "marker"
 
 
-def detections(detection: Detection, stamp_ns: int) -> Fields:
+def detections(detection: Detection, stamp_ns: int, frame_id: str = CAMERA_FRAME) -> Fields:
     """``vision_msgs/Detection2DArray``: the dock and each of its markers; empty without them.
 
     The dock has the class ``dock``, the box about its markers and, where this frame alone gives
     one, its pose; a marker has the class ``marker``, its name as ``id`` and the box about its
     blob.  The score is 1 for a dock that was found, 0.5 for one that is uncertain or partial.
     """
+    head = header(stamp_ns, frame_id)
     markers = detection.markers or {}
     score = 1.0 if detection.found else 0.5
     found = []
     if markers:
-        found.append(_dock(list(markers.values()), detection.pose, score, stamp_ns))
+        found.append(_dock(list(markers.values()), detection.pose, score, head))
     for name, point in markers.items():
         side = 2 * _radius(point, detection.blobs)
-        found.append(_one(MARKER, name, score, None, point, (side, side), stamp_ns))
-    return {"header": header(stamp_ns), "detections": found}
+        found.append(_one(MARKER, name, score, None, point, (side, side), head))
+    return {"header": head, "detections": found}
 
 
-def _dock(points: Sequence[Point], pose: Pose | None, score: float, stamp_ns: int) -> Fields:
+def _dock(points: Sequence[Point], pose: Pose | None, score: float, head: Fields) -> Fields:
     xs, ys = zip(*points, strict=True)
     centre = ((min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2)
     size = (max(xs) - min(xs), max(ys) - min(ys))
-    return _one(DOCK_FRAME, DOCK_FRAME, score, pose, centre, size, stamp_ns)
+    return _one(DOCK_FRAME, DOCK_FRAME, score, pose, centre, size, head)
 
 
 def _one(
@@ -45,10 +46,10 @@ def _one(
     pose: Pose | None,
     centre: Point,
     size: Point,
-    stamp_ns: int,
+    head: Fields,
 ) -> Fields:
     return {
-        "header": header(stamp_ns),
+        "header": head,
         "results": [
             {
                 "hypothesis": {"class_id": class_id, "score": score},

@@ -8,7 +8,7 @@ from chromadock.results.detection import Detection
 from chromadock.results.pose import Pose
 from chromadock.results.track import TrackedPose
 from chromadock.ros.fields import Fields
-from chromadock.ros.header import CAMERA_FRAME, DOCK_FRAME, header
+from chromadock.ros.header import FRAME_IDS, FrameIds, header
 
 _NOWHERE = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), None)
 
@@ -32,18 +32,35 @@ def pose_with_covariance(pose: TrackedPose | Pose | None) -> Fields:
     }
 
 
-def pose_stamped(pose: TrackedPose, stamp_ns: int) -> Fields:
-    """``geometry_msgs/PoseWithCovarianceStamped``."""
-    return {"header": header(stamp_ns), "pose": pose_with_covariance(pose)}
+def pose_stamped(pose: TrackedPose, stamp_ns: int, ids: FrameIds = FRAME_IDS) -> Fields:
+    """``geometry_msgs/PoseWithCovarianceStamped``: the dock's own axes in the camera's frame."""
+    return {"header": header(stamp_ns, ids.camera), "pose": pose_with_covariance(pose)}
 
 
-def transforms(pose: TrackedPose, stamp_ns: int) -> Fields:
+def dock_pose_for_nav2(pose: TrackedPose, stamp_ns: int, ids: FrameIds = FRAME_IDS) -> Fields:
+    """``geometry_msgs/PoseStamped`` of the dock as Nav2's docking server wants it detected.
+
+    Nav2 drives along +x of its dock, into it.  Its SimpleChargingDock gets that from a detected
+    pose by ``external_detection_rotation_*``, whose defaults (roll -90, pitch 90, yaw 0 degrees)
+    make +x of -z: they are for a printed tag, x right, y up, z towards whoever looks at it.  The
+    dock's own axes (x right, y down, z away) are those after half a turn about x, so the pose is
+    told after that half turn and the defaults hold.
+    """
+    w, x, y, z = pose.q_wxyz
+    half_turned = (-x, w, z, -y)  # the quaternion times (0, 1, 0, 0)
+    return {
+        "header": header(stamp_ns, ids.camera),
+        "pose": {"position": _xyz(pose.t), "orientation": _quaternion(half_turned)},
+    }
+
+
+def transforms(pose: TrackedPose, stamp_ns: int, ids: FrameIds = FRAME_IDS) -> Fields:
     """``tf2_msgs/TFMessage`` from the camera's frame to the dock's."""
     return {
         "transforms": [
             {
-                "header": {**header(stamp_ns), "frame_id": CAMERA_FRAME},
-                "child_frame_id": DOCK_FRAME,
+                "header": header(stamp_ns, ids.camera),
+                "child_frame_id": ids.dock,
                 "transform": {"translation": _xyz(pose.t), "rotation": _quaternion(pose.q_wxyz)},
             }
         ]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
 from chromadock.ros.bags import Bag, Topic
+from chromadock.ros.header import stamp_ns_of
 from chromadock.ros.mcap_bag import McapBag, head
 from chromadock.ros.ros_bag import RosBag
 from chromadock.ros.topics import METADATA, START
@@ -54,7 +54,7 @@ class BagFrames(Source):
         decoded = 0
         start_ns = self._start_ns
         for index, (logged_ns, message) in enumerate(self._bag.messages(self._topic)):
-            stamp_ns = _stamp_ns(message) or logged_ns
+            stamp_ns = stamp_ns_of(message) or logged_ns
             start_ns = stamp_ns if start_ns is None else start_ns
             try:
                 image = picture(message, f"{self._path}: {self._topic}, message {index}")
@@ -80,7 +80,7 @@ class BagFrames(Source):
     def _rate(self) -> float:
         """Frames a second, by the first few."""
         first = itertools.islice(self._bag.messages(self._topic), _RATE_FRAMES)
-        stamps = [_stamp_ns(message) or logged_ns for logged_ns, message in first]
+        stamps = [stamp_ns_of(message) or logged_ns for logged_ns, message in first]
         spans = len(stamps) - 1
         seconds = (stamps[-1] - stamps[0]) / 1e9 if spans > 0 else 0.0
         return spans / seconds if 0 < spans <= 1000 * seconds else DEFAULT_FPS
@@ -133,9 +133,3 @@ def _start_ns(path: Path) -> int | None:
     """When a recording of Chromadock began."""
     said = head(path)[1].get(METADATA, {}).get(START, "")
     return int(said) if said.removeprefix("-").isdecimal() else None
-
-
-def _stamp_ns(message: Any) -> int:
-    """Unix nanoseconds of a message's header; 0 where nobody set it."""
-    stamp = message.header.stamp
-    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)

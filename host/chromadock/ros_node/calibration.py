@@ -1,0 +1,46 @@
+"""The camera that a CameraInfo message describes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from chromadock.camera import CameraModel
+from chromadock.camera_file import calibration_of
+from chromadock.errors import ChromadockError
+
+
+def camera_of_info(message: Any, topic: str) -> CameraModel:
+    """The camera of a ``sensor_msgs/CameraInfo``, for the pictures that it comes with.
+
+    Region of interest and binning are applied; an empty ``distortion_model`` is a pinhole.
+
+    Parameters
+    ----------
+    topic : what messages call it.
+
+    Raises
+    ------
+    ChromadockError
+        One line where the camera is not calibrated (by sensor_msgs, K[0] is 0 then), of a lens that
+        is not known here, or of numbers that are no camera's.
+    """
+    k = [float(number) for number in message.k]
+    if k[0] == 0:
+        raise ChromadockError(
+            f"{topic}: the camera is not calibrated (its matrix k begins with 0): calibrate it in "
+            "water and have its driver load that, or set the parameter camera.calibration"
+        )
+    roi = message.roi
+    content = {
+        "width": message.width,
+        "height": message.height,
+        "distortion_model": message.distortion_model,
+        "d": [float(number) for number in message.d],
+        "k": k,
+        "binning_x": message.binning_x,
+        "binning_y": message.binning_y,
+        "roi": {name: getattr(roi, name) for name in ("x_offset", "y_offset", "width", "height")},
+    }
+    read = calibration_of(content, topic)
+    name = topic + read.window
+    return CameraModel(read.width, read.height, read.matrix, read.distortion, name, read.lens)

@@ -184,7 +184,7 @@ def test_places_that_fit_no_dock_give_no_pose_in_the_distance() -> None:
     """Any three places: a search that finds no dock nearby shrinks it to a point."""
     rng, count = np.random.default_rng(0), 0
     points = DockGeometry.default().points[:3]
-    for _ in range(1000):
+    for _ in range(300):
         pixels = rng.uniform((200, 150), (440, 330), (3, 2))
         for pose in estimates(Sighting(points, pixels, rng.uniform(0.1, 0.4, 3), CAMERA)):
             count += 1
@@ -193,7 +193,7 @@ def test_places_that_fit_no_dock_give_no_pose_in_the_distance() -> None:
             for spread in (pose.covariance, wide.covariance):
                 assert np.isfinite(spread).all()
                 assert np.linalg.eigvalsh(spread)[0] > 0
-    assert count > 1000
+    assert count > 300
 
 
 def test_what_a_pose_leaves_unknown_has_a_large_variance() -> None:

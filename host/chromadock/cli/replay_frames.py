@@ -53,7 +53,7 @@ def _run(recorded: Recorded, frames: Source, out: Path | None) -> list[Pair]:
     lines = None if out is None else JsonLines(out / "frames.jsonl")
     try:
         for frame in shown:
-            new = recorded.detector.process(frame.image, frame.time_s)
+            new = recorded.detector.process(frame.image, frame.time_s, frame.attitude)
             pairs.append(Pair(frame.time_s, recorded.results.get(frame.time_s), new))
             if lines is not None:
                 lines.write(result_record(frame, new, None))

@@ -198,7 +198,8 @@ def test_detect_has_them_too_and_without_them_nothing_is_found(dive: Path) -> No
     with open_source(str(dive)) as source:
         taken = list(itertools.islice(source, 40))
     for frame in taken:
-        assert told.process(frame.image, frame.time_s, frame.attitude).state == (
-            recorded[frame.time_s].state
-        )
+        before = recorded.at(frame.time_s)
+        assert before is not None
+        state = told.process(frame.image, frame.time_s, frame.attitude).state
+        assert state == before.detection.state
         assert not alone.process(frame.image, frame.time_s).found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,13 @@ METADATA = "chromadock"
 """Name of the record of metadata in a recording, which has ``START``."""
 START = "start_unix_ns"
 """Unix nanoseconds at which ``Frame.time_s`` was 0."""
+
+
+def start_of(metadata: Mapping[str, Mapping[str, str]]) -> int | None:
+    """The same of a file's metadata, by the names of its records; None where Chromadock has not
+    recorded it."""
+    said = metadata.get(METADATA, {}).get(START, "")
+    return int(said) if said.removeprefix("-").isdecimal() else None
 
 
 def messages(

@@ -13,7 +13,7 @@ from chromadock.ros.attitude import attitude_from_imu
 from chromadock.ros.bags import Bag, Topic
 from chromadock.ros.mcap_bag import McapBag, head
 from chromadock.ros.ros_bag import RosBag
-from chromadock.ros.topics import ATTITUDE, METADATA, START, TOPICS
+from chromadock.ros.topics import ATTITUDE, TOPICS, start_of
 from chromadock.sources.bag_kind import is_mcap
 from chromadock.sources.base import Frame, OnFault, Source
 from chromadock.sources.ros_pictures import COMPRESSED, IMAGE, picture
@@ -126,7 +126,7 @@ def open_bag(path: Path, topic: str | None, on_fault: OnFault) -> BagFrames:
     bag: Bag
     if is_mcap(path):
         bag = McapBag(path)
-        start_ns = _start_ns(path)
+        start_ns = start_of(head(path)[1])
     else:
         bag = RosBag(path)
     try:
@@ -151,12 +151,6 @@ def _chosen(bag: Bag, topic: str | None, path: Path) -> Topic:
     names = ", ".join(one.name for one in shown)
     which = "several topics of pictures" if topic is None else f"no pictures in {topic}"
     raise ChromadockError(f"{path}: {which}: give {path}?topic= with one of {names}")
-
-
-def _start_ns(path: Path) -> int | None:
-    """When a recording of Chromadock began."""
-    said = head(path)[1].get(METADATA, {}).get(START, "")
-    return int(said) if said.removeprefix("-").isdecimal() else None
 
 
 def _stamp_ns(message: Any) -> int:

@@ -33,7 +33,7 @@ class Stream(Grabber):
     def __init__(self, container: av.container.InputContainer) -> None:
         self._container = container
         self._video = container.streams.video[0]
-        self._stamped = not container.format.flags & Flags.no_timestamps.value
+        self._stamped = Flags.no_timestamps not in Flags(container.format.flags)
         # Threads that decode whole frames side by side hold back as many frames as they are.
         self._video.codec_context.thread_type = "SLICE"
         rate = self._video.average_rate or self._video.guessed_rate

@@ -31,7 +31,7 @@ class Peer:
     ) -> None:
         self.messages: list[Any] = []
         self.position: tuple[float, float, float] | None = None
-        self.yaw = 0.0
+        self.roll, self.yaw = 0.0, 0.0
         self._read, self._write = read, write
         self._heartbeat = mavlink.MAVLink_heartbeat_message(mav_type, autopilot, 0, 0, 4, 3)
         self._parser = mavlink.MAVLink(None)
@@ -48,7 +48,7 @@ class Peer:
         """A fiftieth of a second of an autopilot's life."""
         ms = round((time.monotonic() - self._booted_s) * 1000)
         self.send(self._heartbeat)
-        self.send(mavlink.MAVLink_attitude_message(ms, 0.0, 0.0, self.yaw, 0.0, 0.0, 0.0))
+        self.send(mavlink.MAVLink_attitude_message(ms, self.roll, 0.0, self.yaw, 0.0, 0.0, 0.0))
         if self.position is not None:
             still = (0.0, 0.0, 0.0)
             self.send(mavlink.MAVLink_local_position_ned_message(ms, *self.position, *still))

@@ -21,13 +21,15 @@ distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}
 """
 
 
-def picture(away_m: float, noise_seed: int | None = None) -> np.ndarray:
-    """The dock straight ahead, its markers of the colour that this water makes of them."""
+def picture(away_m: float, noise_seed: int | None = None, roll_rad: float = 0.0) -> np.ndarray:
+    """The dock straight ahead, its markers of the colour that this water makes of them; the
+    vehicle rolled about where it looks to."""
     frame = np.full((480, 640, 3), WATER, np.uint8)
     dock = DockGeometry.default()
     found = Detector(None, dock, independent=True).process(frame, 0)
     assert found.observed is not None
-    for x, y in CAMERA.project(dock.points + np.array([0, 0, away_m])):
+    R_camera_dock = cv2.Rodrigues(np.array([0.0, 0.0, -roll_rad]))[0]
+    for x, y in CAMERA.project(dock.points @ R_camera_dock.T + np.array([0, 0, away_m])):
         place = (round(x * 16), round(y * 16))
         cv2.circle(frame, place, 5 * 16, found.observed[::-1], -1, cv2.LINE_AA, 4)
     if noise_seed is not None:

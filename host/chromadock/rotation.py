@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -10,6 +12,10 @@ from chromadock.errors import ChromadockError
 NOT_ORTHONORMAL = 1e-3
 """Largest element of R^T R - 1 of a matrix that is still a rotation written with few digits: a
 hundredth of a degree more than a mounting can be measured to would be a slip."""
+
+
+UNKNOWN_ANGLE = math.pi**2 / 3
+"""Variance, radians squared, of an angle that may be any: uniform over a full turn."""
 
 
 def checked_rotation(matrix: ArrayLike, name: str) -> NDArray[np.float64]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import timeit
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -115,6 +117,16 @@ def test_what_is_no_detection_is_refused_in_one_line(change: dict[str, Any], sai
     with pytest.raises(ChromadockError, match=said) as refused:
         Detection.from_dict(whole() | change)
     assert "\n" not in str(refused.value)
+
+
+def test_a_line_is_read_in_the_time_of_some_lines_of_json() -> None:
+    """A ratio, for any computer: an hour has a hundred thousand lines."""
+    line = json.dumps(whole())
+
+    def least_s(read: Callable[[Any], object]) -> float:
+        return min(timeit.repeat(lambda: read(json.loads(line)), number=10, repeat=5))
+
+    assert least_s(Detection.from_dict) < 50 * least_s(lambda content: content)
 
 
 def test_a_missing_key_is_named() -> None:

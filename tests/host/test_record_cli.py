@@ -145,8 +145,8 @@ def test_every_command_of_the_manual_runs(
         for line in MANUAL.read_text().splitlines()
         if line.startswith(".venv/bin/chromadock")
     ]
-    assert len(shown) == 5
+    assert len(shown) == 7
     for command in shown:
         done = chromadock(capsys, *command)
         assert done.status == 0, (command, done.err)
-    assert {"dive.mcap", "dive-2.mcap", "compared"} <= {p.name for p in tmp_path.iterdir()}
+    assert {"dive.mcap", "dive-2.mcap", "compared", "all"} <= {p.name for p in tmp_path.iterdir()}

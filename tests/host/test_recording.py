@@ -31,7 +31,7 @@ from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from chromadock import CameraModel
+from chromadock import Attitude, CameraModel
 from chromadock.errors import ChromadockError
 from chromadock.output import Guarded, ResultOutput, Surroundings
 from chromadock.output import open_output as open_named
@@ -60,7 +60,11 @@ Messages = dict[str, list[tuple[int, Any]]]
 
 @pytest.fixture(scope="module")
 def run() -> tuple[list[Frame], list[Detection]]:
-    pictures = frames(COUNT, start_s=3.0)
+    """Of a vehicle that tells its attitude, another one with each frame."""
+    pictures = [
+        dataclasses.replace(frame, attitude=Attitude(0.01 * frame.index, 0.02, -0.5))
+        for frame in frames(COUNT, start_s=3.0)
+    ]
     results = detected(pictures)
     assert [r.track.state for r in results if r.track][-1] == "tracking"
     return pictures, results
@@ -150,7 +154,8 @@ def test_every_topic_has_its_messages_at_the_time_of_capture(
         assert [logged for logged, _ in messages] == of_frames, topic
         if topic not in ("/tf", "/chromadock/detection"):
             assert [stamp_ns(m) for _, m in messages] == of_frames, topic
-            assert {m.header.frame_id for _, m in messages} == {"camera_optical_frame"}
+            where = "base_link" if topic == "/chromadock/attitude" else "camera_optical_frame"
+            assert {m.header.frame_id for _, m in messages} == {where}
 
 
 def test_the_messages_say_what_the_detector_said(
@@ -409,6 +414,11 @@ def test_a_recording_without_a_camera_waits_for_the_disk_and_with_one_does_not(
     os.close(reader)
 
 
+def rolled(number: int) -> Attitude:
+    """Of a frame, by its number."""
+    return Attitude(1e-4 * number, 0.0, 0.0)
+
+
 def write_without_end(path: Path, frame: Frame, detection: Detection, told: Connection) -> None:
     """``RATE_HZ`` frames a second; tells the number and the time of each that was written."""
     recording = Recording(path, RunSetup(VehicleFile(), CAMERA))
@@ -416,7 +426,10 @@ def write_without_end(path: Path, frame: Frame, detection: Detection, told: Conn
     for number in itertools.count():
         time.sleep(max(start_s + number / RATE_HZ - time.monotonic(), 0))
         now_s = time.monotonic()
-        recording.write(Frame(frame.image, "camera 0", number, now_s - start_s), detection, 0.0)
+        taken = dataclasses.replace(
+            frame, index=number, time_s=now_s - start_s, attitude=rolled(number)
+        )
+        recording.write(taken, detection, 0.0)
         told.send((number, time.monotonic()))
 
 
@@ -440,7 +453,11 @@ def test_a_kill_at_any_moment_takes_the_last_second_at_most(
         assert len(found[topic]) == len(said)
     for _, message in found.get("/chromadock/image", []):
         assert cv2.imdecode(np.frombuffer(bytes(message.data), np.uint8), 1) is not None
-    assert frames_of_ours(path) == len(said)
+    told = frames_of_ours(path)
+    assert len(told) == len(said)
+    for frame in told:
+        assert frame.attitude is not None
+        assert frame.attitude.roll_rad == pytest.approx(rolled(frame.index).roll_rad, abs=1e-9)
 
 
 def killable(path: Path, frame: Frame, detection: Detection) -> tuple[BaseProcess, Connection]:
@@ -461,18 +478,18 @@ def received(pipe: Connection) -> Iterator[tuple[int, float]]:
             yield pipe.recv()
 
 
-def frames_of_ours(path: Path) -> int:
-    """How many frames this program reads of an unfinished file, which it says is one."""
+def frames_of_ours(path: Path) -> list[Frame]:
+    """The frames that this program reads of an unfinished file, which it says is one."""
     told: list[str] = []
     try:
         with open_source(str(path), on_fault=told.append) as source:
-            count = sum(1 for _ in source)
+            found = list(source)
             assert source.cut_short
     except ChromadockError as error:  # killed before there was any
         assert "no pictures in it" in str(error)
-        return 0
+        return []
     assert len(told) == 1 and "cut short (it was never finished" in told[0]
-    return count
+    return found
 
 
 LAYOUT = Path(__file__).resolve().parents[2] / "docs" / "foxglove_layout.json"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,8 +17,10 @@ from simulation import chromadock
 from chromadock import Detector, DockGeometry
 from chromadock.output.recording import Recording
 from chromadock.output.run_setup import RunSetup
+from chromadock.replay.compared import compared
 from chromadock.replay.pairs import Pair, attitude_difference_deg, place_difference_m
 from chromadock.replay.recorded import read_recorded
+from chromadock.replay.results import MOST_WAITING, Result
 from chromadock.results.detection import Background, Detection, Marker
 from chromadock.results.pose import Pose
 from chromadock.results.track import Track, TrackedPose
@@ -90,6 +93,27 @@ def test_another_setting_holds_and_its_effect_is_told(dive: Path, capsys: Captur
     assert recorded.camera is not None and recorded.camera.matrix[0, 0] == 512
 
 
+def test_a_result_is_found_by_its_frame_though_others_have_none(
+    tmp_path: Path,
+) -> None:
+    """Of frames that cannot be read results are left over, ever so many."""
+    many = tmp_path / "many.mcap"
+    frame = frames(1)[0]
+    detection = detected([frame])[0]
+    with Recording(many, RunSetup(VehicleFile(), CAMERA)) as recording:
+        for k in range(3 * MOST_WAITING):
+            small = np.zeros((8, 8, 3), np.uint8)
+            evidence = replace(detection, evidence=float(k))
+            recording.write(replace(frame, image=small, index=k, time_s=k / 8), evidence, None)
+    results = read_recorded(many, {}).results
+    for k in (0, 1, 2 * MOST_WAITING, 2 * MOST_WAITING + 1, 3 * MOST_WAITING - 1):
+        assert results.at(k / 8 - 0.01) is None
+        found = results.at(k / 8)
+        assert found is not None and found.detection.evidence == k
+        assert len(results._waiting) <= MOST_WAITING
+    assert results.at(3 * MOST_WAITING / 8) is None
+
+
 def test_the_table_has_both_runs_and_the_folder_figures_frames_and_a_picture(
     dive: Path, tmp_path: Path, capsys: Capture
 ) -> None:
@@ -103,6 +127,28 @@ def test_the_table_has_both_runs_and_the_folder_figures_frames_and_a_picture(
     assert json.loads((out / "comparison.json").read_text())["frames"] == COUNT
     texts = {e.text for e in ElementTree.parse(out / "comparison.svg").iter() if e.text}
     assert {"recorded", "replayed", "range, m", "difference of place, mm"} <= texts
+    assert {"not found", "found", "locked", "of attitude, degrees", "latency, ms"} <= texts
+
+
+def test_the_latency_is_the_runs_with_the_new_time_of_the_frame(
+    dive: Path, capsys: Capture
+) -> None:
+    """Of the recording 30 ms each."""
+    told = json.loads(chromadock(capsys, "replay", dive, "--json").out)
+    old, new = told["old"], told["new"]
+    assert old["latency_ms"] == old["latency_99_ms"] == 30.0
+    assert new["latency_99_ms"] >= new["latency_ms"] is not None
+    first = read_recorded(dive, {}).results.at(3.0)
+    assert first is not None and first.age_s == 0.03
+    before, faster, slower = (
+        replace(first.detection, timing_ms={"total": spent_ms}) for spent_ms in (20.0, 1.0, 27.0)
+    )
+    result = Result(before, 0.03)
+    assert compared(3.0, result, slower).new.latency_ms == pytest.approx(37.0)
+    assert compared(3.0, result, faster).new.latency_ms == pytest.approx(11.0)
+    assert compared(3.0, replace(result, age_s=None), faster).new.latency_ms is None
+    rows = chromadock(capsys, "replay", dive).out.splitlines()
+    assert any(row.split()[1:5] == ["latency,", "ms", "│", "30.0"] for row in rows)
 
 
 def test_without_matplotlib_there_is_all_but_the_picture(
@@ -110,7 +156,7 @@ def test_without_matplotlib_there_is_all_but_the_picture(
 ) -> None:
     found = importlib.util.find_spec
     monkeypatch.setattr(
-        "chromadock.cli.replay_frames.find_spec",
+        "chromadock.replay.run.find_spec",
         lambda name: None if name == "matplotlib" else found(name),
     )
     done = chromadock(capsys, "replay", dive, "--out", tmp_path)
@@ -131,7 +177,7 @@ def test_an_unfinished_recording_is_replayed_as_far_as_it_goes(
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ("dock.mapping=octal", "dive.mcap/vehicle.toml: dock.mapping is 'octal': it must be one"),
+        ("dock.mapping=octal", "--set: dock.mapping is 'octal': it must be one"),
         ("detector.metod=paper", "unknown key detector.metod"),
         ("method", "--set method: write key=value, e.g. detector.method=paper"),
         ("camera.source=0", "--set camera.source: changes nothing in a replay"),
@@ -152,6 +198,19 @@ def test_what_is_no_recording_is_one_line(tmp_path: Path, capsys: Capture) -> No
     for name, said in (("a.mp4", "not recorded by chromadock"), ("b.mcap", "no such file")):
         done = chromadock(capsys, "replay", tmp_path / name)
         assert done.status == 2 and said in done.err and done.err.count("\n") == 1
+
+
+def test_results_of_another_schema_are_one_line_that_names_the_recording(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    frame = frames(1)[0]
+    with monkeypatch.context() as later:
+        later.setattr("chromadock.results.record.SCHEMA", 2)
+        with Recording(tmp_path / "new.mcap", RunSetup(VehicleFile(), CAMERA)) as recording:
+            recording.write(frame, detected([frame])[0], None)
+    done = chromadock(capsys, "replay", tmp_path / "new.mcap")
+    assert done.status == 2 and done.err.count("\n") == 1
+    assert "new.mcap: /chromadock/detection: a detection of schema 2" in done.err
 
 
 def test_an_out_that_is_a_file_is_one_line(dive: Path, capsys: Capture) -> None:
@@ -175,11 +234,11 @@ def result(t: tuple[float, float, float], turn_deg: float, track: str | None) ->
 
 @pytest.mark.parametrize("turn_deg", [1e-6, 0.5, 30.0, 179.0])
 def test_differences_are_of_geometry(turn_deg: float) -> None:
-    pair = Pair(0.0, result((0, 0, 2), 10, None), result((0.3, 0.4, 2), 10 + turn_deg, "tracking"))
+    pair = Pair(result((0, 0, 2), 10, None), result((0.3, 0.4, 2), 10 + turn_deg, "tracking"))
     assert place_difference_m(pair) == pytest.approx(0.5)
     assert attitude_difference_deg(pair) == pytest.approx(turn_deg, rel=1e-6)
 
 
 def test_a_track_that_has_lost_the_dock_has_no_pose_to_compare() -> None:
-    lost = Pair(0.0, result((0, 0, 2), 0, "tracking"), result((0, 0, 2), 0, "recently_lost"))
+    lost = Pair(result((0, 0, 2), 0, "tracking"), result((0, 0, 2), 0, "recently_lost"))
     assert place_difference_m(lost) is None and attitude_difference_deg(lost) is None

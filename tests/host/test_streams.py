@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
 import subprocess
@@ -19,6 +20,7 @@ import numpy as np
 import pytest
 from camera_manager import EXPOSURE, Manager
 from picture_time import age_s
+from web_camera import PERIOD_S, web_camera
 
 from chromadock.controls.opening import CameraSettings
 from chromadock.errors import ChromadockError
@@ -142,6 +144,18 @@ def test_a_web_camera_that_breaks_off_is_waited_for() -> None:
     server.server_close()
     assert frames[0].image.shape == (48, 64, 3)
     assert "delivers no more frames" in lines[0] and "is back" in lines[1]
+
+
+def test_a_web_camera_that_sends_no_stamps_has_the_times_of_arrival() -> None:
+    """FFmpeg makes up 25 pictures a second, but these come ten times a second."""
+    jpeg = cv2.imencode(".jpg", np.full((48, 64, 3), 90, np.uint8))[1].tobytes()
+    with web_camera(lambda: jpeg) as address, open_source(address) as source:
+        times, ages = [], []
+        for frame in itertools.islice(source, 20):
+            times.append(frame.time_s)
+            ages.append(source.now() - frame.time_s)  # type: ignore[operator]
+    assert np.median(np.diff(times)) == pytest.approx(PERIOD_S, rel=0.1)
+    assert np.quantile(ages, 0.9) < PERIOD_S
 
 
 def test_mpeg_over_udp_is_read() -> None:

@@ -11,10 +11,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.autopilot.place import attitude_of
 from chromadock.results.track import Vector
 from chromadock.stamps import Stamps
-from chromadock.track.attitude import Attitude
+from chromadock.track.attitude import Attitude, attitude_of
 
 Floats = NDArray[np.float64]
 

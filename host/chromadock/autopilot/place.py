@@ -8,7 +8,6 @@ better has parameters for it (docs/autopilot.md).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,18 +15,13 @@ from numpy.typing import NDArray
 
 from chromadock.mounting import R_BODY_CAMERA_FORWARD, Mounting
 from chromadock.results.track import TrackedPose
-from chromadock.rotation import matrix_from_quaternion
-from chromadock.track.attitude import Attitude
+from chromadock.rotation import UNKNOWN_ANGLE, matrix_from_quaternion
 
 Floats = NDArray[np.float64]
 
 ATTITUDE_ERROR_RAD = 0.02
 """Error of the vehicle's attitude at a frame's time, of the mounting, and of the time itself: one
 degree together.  At 5 m it is 0.1 m of place, more than the camera's own error."""
-
-UNKNOWN_ANGLE = math.pi**2 / 3
-"""Variance, radians squared, of an angle that may be any: uniform over a full turn.  For attitudes
-that are the receiver's own, given back: whoever weighs them by it takes nothing from them."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -68,17 +62,8 @@ def place_covariance(pose: TrackedPose, R_ned_camera: Floats) -> Floats:
 
 def upper_triangle(places: Floats) -> list[float]:
     """The 21 numbers of a pose's covariance in MAVLink: upper triangle by rows, of x, y, z, roll,
-    pitch, yaw; from the (3, 3) covariance of the place, and angles that say nothing."""
+    pitch, yaw; from the (3, 3) covariance of the place, and angles that say nothing: they are the
+    receiver's own, given back, and whoever weighs them so takes nothing from them."""
     whole = np.diag([0.0, 0.0, 0.0, UNKNOWN_ANGLE, UNKNOWN_ANGLE, UNKNOWN_ANGLE])
     whole[:3, :3] = places
     return [float(value) for value in whole[np.triu_indices(6)]]
-
-
-def attitude_of(R_world_body: Floats) -> Attitude:
-    """Roll, pitch and yaw, radians, of a rotation: the inverse of ``Attitude.R_world_body``."""
-    R = R_world_body
-    return Attitude(
-        math.atan2(R[2, 1], R[2, 2]),
-        math.asin(max(-1.0, min(1.0, -float(R[2, 0])))),
-        math.atan2(R[1, 0], R[0, 0]),
-    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 from chromadock.camera import CameraModel
@@ -23,7 +24,6 @@ from chromadock.output import (
 from chromadock.overlay import draw_overlay
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame, Source
-from chromadock.track.attitude import Attitude
 
 
 def detect_frames(
@@ -72,11 +72,9 @@ def _run(
 ) -> bool:
     """Frame after frame; True where Ctrl-C ended a live source, which is its only end."""
     try:
-        for frame in frames:
-            age_s = _age_s(frames, frame)
-            attitudes = (output.attitude(frame.time_s, age_s) for output in results)
-            attitude = next(filter(None, attitudes), None)
-            detection = _one(frame, attitude, detector, model, geometry, pictures)
+        for taken in frames:
+            frame = _with_attitude(taken, results, _age_s(frames, taken))
+            detection = _one(frame, detector, model, geometry, pictures)
             age_s = _age_s(frames, frame)
             for output in results:
                 output.write(frame, detection, age_s)
@@ -88,6 +86,15 @@ def _run(
     return False
 
 
+def _with_attitude(frame: Frame, results: Sequence[ResultOutput], age_s: float | None) -> Frame:
+    """The frame with the vehicle's attitude: its own as a recording has it, or else that of the
+    first output that tells one."""
+    if frame.attitude is not None:
+        return frame
+    attitudes = (output.attitude(frame.time_s, age_s) for output in results)
+    return replace(frame, attitude=next(filter(None, attitudes), None))
+
+
 def _age_s(frames: Source, frame: Frame) -> float | None:
     """How old a live source's picture is by now."""
     now_s = frames.now()
@@ -96,14 +103,13 @@ def _age_s(frames: Source, frame: Frame) -> float | None:
 
 def _one(
     frame: Frame,
-    attitude: Attitude | None,
     detector: Detector,
     model: CameraModel | None,
     geometry: DockGeometry,
     pictures: OverlayOutput | None,
 ) -> Detection:
     try:
-        detection = detector.process(frame.image, frame.time_s, attitude)
+        detection = detector.process(frame.image, frame.time_s, frame.attitude)
     except ChromadockError as error:
         raise ChromadockError(f"{frame.name}: {error}") from None
     if pictures is not None:

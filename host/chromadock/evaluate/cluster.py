@@ -7,10 +7,13 @@ import logging
 import signal
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from concurrent.futures import CancelledError
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any
 
 import dask
-from distributed import Client, LocalCluster, Worker, WorkerPlugin
+from distributed import Client, Future, LocalCluster, Worker, WorkerPlugin
+from distributed.scheduler import KilledWorker
 
 from chromadock.errors import ChromadockError
 from chromadock.evaluate.version import versions
@@ -28,6 +31,12 @@ _KEEP_MEMORY = {
     f"{_ENVIRONMENT}.MALLOC_TRIM_THRESHOLD_": 1 << 28,
     f"{_ENVIRONMENT}.MALLOC_MMAP_THRESHOLD_": 1 << 25,  # the most that it takes
 }
+
+
+def cluster_of(scheduler: str | None, workers: int, warn: Warn) -> AbstractContextManager[Client]:
+    """The workers of the ``scheduler`` at an address, or else ``workers`` of this machine; see
+    ``remote_cluster`` and ``local_cluster``."""
+    return local_cluster(workers) if scheduler is None else remote_cluster(scheduler, warn)
 
 
 @contextmanager
@@ -54,6 +63,10 @@ class _DeafToCtrlC(WorkerPlugin):
 
     def setup(self, worker: Worker) -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+class ClusterLostError(ChromadockError):
+    """Whatever is still to be done, nobody does it."""
 
 
 def _quiet_dask() -> None:
@@ -94,6 +107,27 @@ def remote_cluster(address: str, warn: Warn) -> Iterator[Client]:
     with client:
         _compare_versions(client, address, warn)
         yield client
+
+
+def result_of(future: Future[Any]) -> Any:
+    """What the worker returned.
+
+    Raises
+    ------
+    ChromadockError
+        Its own, or one line where the workers are lost.
+    """
+    try:
+        return future.result()
+    except KilledWorker as error:
+        raise ChromadockError(
+            f"the same piece of work ended {error.allowed_failures + 1} workers: "
+            "they may lack memory; use fewer --workers"
+        ) from None
+    except CancelledError:
+        raise ClusterLostError(
+            "the scheduler is gone: start it, then give the same command again"
+        ) from None
 
 
 def _compare_versions(client: Client, address: str, warn: Warn) -> None:

@@ -5,16 +5,14 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError
 from pathlib import Path
-from typing import Any
 
 import polars as pl
 from distributed import Client, Future, as_completed
-from distributed.scheduler import KilledWorker
 
 from chromadock.errors import ChromadockError
 from chromadock.evaluate import provenance, rows
+from chromadock.evaluate.cluster import result_of
 from chromadock.evaluate.plan import Chunk, planned, run_digest
 from chromadock.evaluate.runs import Run
 from chromadock.evaluate.store import Store, digest, make_folder, write_whole
@@ -74,7 +72,7 @@ def _tuned(path: Path, client: Client) -> Tuned:
             return Tuned.from_dict(content)
     except (OSError, ValueError, KeyError, TypeError):
         pass
-    tuned: Tuned = _result(client.submit(tuned_filters, key=f"tuned-{key}"))
+    tuned: Tuned = result_of(client.submit(tuned_filters, key=f"tuned-{key}"))
     content = {"digest": key, **tuned.to_dict()}
     write_whole(path, json.dumps(content, indent=1).encode())
     return tuned
@@ -101,29 +99,8 @@ def _worked(
         chunk_of[future] = chunk
     steps.clear()  # the scheduler drops those that no chunk waits for
     for future in as_completed(chunk_of):  # type: ignore[no-untyped-call]
-        result = _result(future)
+        result = result_of(future)
         yield chunk_of.pop(future), result
-
-
-def _result(future: Future[Any]) -> Any:
-    """What the worker returned.
-
-    Raises
-    ------
-    ChromadockError
-        Its own, or one line where the workers are lost.
-    """
-    try:
-        return future.result()
-    except KilledWorker as error:
-        raise ChromadockError(
-            f"the same piece of work ended {error.allowed_failures + 1} workers: "
-            "they may lack memory; use fewer --workers"
-        ) from None
-    except CancelledError:
-        raise ChromadockError(
-            "the scheduler is gone: start it, then the same command goes on where this ended"
-        ) from None
 
 
 def _collected(out: Path, store: Store, chunks: Sequence[Chunk]) -> pl.DataFrame:

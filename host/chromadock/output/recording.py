@@ -29,7 +29,7 @@ _Waiting = tuple[Frame, Detection, float | None, int]
 
 
 class Recording(ResultOutput):
-    """Writes frames, results and settings while the run goes on; see docs/recording.md.
+    """Writes frames, attitudes, results and settings while the run goes on; see docs/recording.md.
 
     The settings stand at the start, and the file can be read up to its last whole piece though
     nothing came after that: neither a kill nor the loss of power takes more than the last second,
@@ -168,7 +168,16 @@ class Recording(ResultOutput):
         self._dropped += max(frame.index - self._next_index, 0)
         self._next_index = frame.index + 1
         line = json_line(result_record(frame, detection, age_s))
-        parts = messages(frame.image, detection, line, age_s, stamp_ns, self._camera, self._dropped)
+        parts = messages(
+            frame.image,
+            frame.attitude,
+            detection,
+            line,
+            age_s,
+            stamp_ns,
+            self._camera,
+            self._dropped,
+        )
         for topic, fields in parts:
             self._file.put(topic, fields, stamp_ns, frame.index)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import asdict
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -66,8 +67,18 @@ def result_record(frame: Frame, detection: Detection, age_s: float | None) -> di
     """One frame's result as a JSON object, alike wherever it goes.
 
     ``file``, ``frame`` and ``time_s`` say which frame it is; ``age_s``, of a live source only, how
-    old its picture was when its result was out; the rest is ``Detection.to_dict``.
+    old its picture was when its result was out; ``attitude``, where the vehicle told it, roll,
+    pitch and yaw (see ``Attitude``) with which the frame was looked at; the rest is
+    ``Detection.to_dict``.
     """
     which = {"file": frame.name, "frame": frame.index, "time_s": round(frame.time_s, 6)}
     age = {} if age_s is None else {"age_s": round(age_s, 4)}
-    return {**which, **age, **detection.to_dict()}
+    angles = {} if frame.attitude is None else {"attitude": _angles(frame.attitude)}
+    return {**which, **age, **angles, **detection.to_dict()}
+
+
+def _angles(attitude: Attitude) -> dict[str, float | None]:
+    """To a microradian."""
+    return {
+        name: None if angle is None else round(angle, 6) for name, angle in asdict(attitude).items()
+    }

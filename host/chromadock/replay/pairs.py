@@ -14,10 +14,9 @@ from chromadock.results.track import TrackedPose
 
 @dataclass(frozen=True)
 class Pair:
-    """Results of the frame at ``time_s``: ``old`` recorded (None where that is missing), ``new``
-    of the replay."""
+    """Results of one frame: ``old`` recorded (None where that is missing), ``new`` of the
+    replay."""
 
-    time_s: float
     old: Detection | None
     new: Detection
 

@@ -8,51 +8,65 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from chromadock.output.base import partial_name
-from chromadock.replay.pairs import (
-    Pair,
-    attitude_difference_deg,
-    place_difference_m,
-    pose_of,
-)
-from chromadock.results.detection import Detection
+from chromadock.replay.compared import Compared, Seen
 
-_OLD, _NEW = "#0072B2", "#D55E00"  # of Okabe and Ito, as in the evaluation's figures
+_OLD: dict[str, Any] = {"marker": ".", "color": "#0072B2", "label": "recorded", "linestyle": ""}
+_NEW: dict[str, Any] = {"marker": "x", "color": "#D55E00", "label": "replayed", "linestyle": ""}
+# Colours of Okabe and Ito, as in the evaluation's figures.
+_APART: dict[str, Any] = {"marker": ".", "color": "black", "linestyle": ""}
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "axes.spines.top": False,
     "axes.spines.right": False,
 }
+_LEVELS = ("not found", "found", "locked")
 
 
-def write_picture(path: Path, pairs: Sequence[Pair]) -> None:
-    """An SVG: range of both runs, and how far they are apart in place and attitude."""
+def write_picture(path: Path, frames: Sequence[Compared]) -> None:
+    """An SVG: what both runs saw and how late, and how far they are apart in place and attitude."""
+    live = any(frame.old is not None and frame.old.latency_ms is not None for frame in frames)
     with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(9, 7), layout="constrained")
-        ranges, places, attitudes = figure.subplots(3, 1, sharex=True)
-        times = [pair.time_s for pair in pairs]
-        ranges.plot(times, [_range_m(p.old) for p in pairs], ".", color=_OLD, label="recorded")
-        ranges.plot(times, [_range_m(p.new) for p in pairs], "x", color=_NEW, label="replayed")
-        ranges.set_ylabel("range, m")
+        figure = Figure(figsize=(9, 10), layout="constrained")
+        ranges, levels, places, attitudes, times = figure.subplots(
+            5, 1, sharex=True, height_ratios=(3, 1.2, 2, 2, 2)
+        )
+        _both(ranges, frames, lambda seen: seen.range_m, "range, m")
         ranges.legend()
-        places.plot(times, 1000 * _values(pairs, place_difference_m), ".", color="black")
+        _both(levels, frames, _level, "")
+        levels.set_yticks(range(len(_LEVELS)), _LEVELS)
+        levels.set_ylim(-0.4, len(_LEVELS) - 0.6)
+        seconds = [frame.time_s for frame in frames]
+        millimetres = 1000 * np.array([frame.place_m for frame in frames], np.float64)
+        places.plot(seconds, millimetres, **_APART)
         places.set_ylabel("difference of place, mm")
-        attitudes.plot(times, _values(pairs, attitude_difference_deg), ".", color="black")
+        degrees = np.array([frame.attitude_deg for frame in frames], np.float64)
+        attitudes.plot(seconds, degrees, **_APART)
         attitudes.set_ylabel("of attitude, degrees")
-        attitudes.set_xlabel("time, s")
+        if live:
+            _both(times, frames, lambda seen: seen.latency_ms, "latency, ms")
+        else:
+            _both(times, frames, lambda seen: seen.processing_ms, "time a frame, ms")
+        times.set_xlabel("time, s")
         partial = partial_name(path)
         figure.savefig(partial, format="svg", metadata={"Date": None})
     partial.replace(path)
 
 
-def _range_m(detection: Detection | None) -> float:
-    pose = pose_of(detection)
-    return np.nan if pose is None else float(np.linalg.norm(pose.t))
+def _both(
+    axes: Axes, frames: Sequence[Compared], value: Callable[[Seen], float | None], label: str
+) -> None:
+    """A point of either run a frame, where it has the value."""
+    seconds = [frame.time_s for frame in frames]
+    old = [None if frame.old is None else value(frame.old) for frame in frames]
+    axes.plot(seconds, np.array(old, np.float64), **_OLD)
+    axes.plot(seconds, np.array([value(frame.new) for frame in frames], np.float64), **_NEW)
+    axes.set_ylabel(label)
 
 
-def _values(
-    pairs: Sequence[Pair], difference: Callable[[Pair], float | None]
-) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return np.array([difference(pair) for pair in pairs], np.float64)
+def _level(seen: Seen) -> float:
+    """Its place among ``_LEVELS``."""
+    return 2 if seen.locked else int(seen.found)

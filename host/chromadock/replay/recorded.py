@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -14,13 +13,13 @@ from chromadock.camera import CameraModel
 from chromadock.detector import Detector
 from chromadock.errors import ChromadockError
 from chromadock.output.run_setup import VEHICLE
-from chromadock.results.detection import Detection
-from chromadock.ros.mcap_bag import McapBag, head
-from chromadock.ros.topics import METADATA, RECORD, START
+from chromadock.replay.results import Results
+from chromadock.ros.mcap_bag import head
+from chromadock.ros.topics import start_of
 from chromadock.sources.bag_kind import is_mcap
 from chromadock.vehicle.building import camera_of, detector_of, dock_of
 from chromadock.vehicle.keys import VehicleFile
-from chromadock.vehicle.reading import read_vehicle
+from chromadock.vehicle.reading import read_vehicle, settings_of
 
 _OF_NO_USE = ("outputs.", "camera.source", "camera.delay_s")
 """Beginnings of keys that change nothing where frames and their times are recorded ones."""
@@ -28,15 +27,12 @@ _OF_NO_USE = ("outputs.", "camera.source", "camera.delay_s")
 
 @dataclass(frozen=True)
 class Recorded:
-    """What a recording has beside its frames.
-
-    ``results`` by the ``Frame.time_s`` of their frames, as ``sources`` reads these.
-    """
+    """What a recording has beside its frames."""
 
     settings: VehicleFile
     camera: CameraModel | None
     detector: Detector
-    results: dict[float, Detection]
+    results: Results
 
 
 def read_recorded(path: Path, changes: Mapping[str, Any]) -> Recorded:
@@ -47,13 +43,11 @@ def read_recorded(path: Path, changes: Mapping[str, Any]) -> Recorded:
     ChromadockError
         Where it is none, or a change is none.
     """
-    for key in changes:
-        if key.startswith(_OF_NO_USE):
-            raise ChromadockError(f"--set {key}: changes nothing in a replay: leave it out")
     if not path.exists():
         raise ChromadockError(f"{path}: no such file: give a recording, as --record makes")
     files, metadata = head(path) if is_mcap(path) else ({}, {})
-    if VEHICLE not in files or METADATA not in metadata:
+    start_ns = start_of(metadata)
+    if VEHICLE not in files or start_ns is None:
         raise ChromadockError(
             f"{path}: not recorded by chromadock, so it has no settings and results to compare "
             "with: see what is in it with `chromadock detect`"
@@ -64,7 +58,23 @@ def read_recorded(path: Path, changes: Mapping[str, Any]) -> Recorded:
         # The recorded dock was looked at when it was recorded; another one was not.
         dock = dock_of(settings, confirmed="dock.file" not in changes)
         detector = detector_of(settings, camera, dock)
-    return Recorded(settings, camera, detector, _results(path, int(metadata[METADATA][START])))
+    return Recorded(settings, camera, detector, Results(path, start_ns))
+
+
+def check_changes(changes: Mapping[str, Any]) -> None:
+    """Refuse what is no setting, or one that a replay has no use for.
+
+    Raises
+    ------
+    ChromadockError
+        One line with the key, or with the file that a change names.
+    """
+    for key in changes:
+        if key.startswith(_OF_NO_USE):
+            raise ChromadockError(f"--set {key}: changes nothing in a replay: leave it out")
+    settings = settings_of(changes)
+    camera_of(settings)
+    dock_of(settings)
 
 
 @contextmanager
@@ -78,11 +88,3 @@ def _unpacked(path: Path, files: Mapping[str, bytes]) -> Iterator[Path]:
             yield folder
         except ChromadockError as error:
             raise ChromadockError(str(error).replace(scratch, str(path))) from None
-
-
-def _results(path: Path, start_ns: int) -> dict[float, Detection]:
-    with McapBag(path) as bag:
-        return {
-            (logged_ns - start_ns) / 1e9: Detection.from_dict(json.loads(message.data))
-            for logged_ns, message in bag.messages(RECORD)
-        }

@@ -8,26 +8,22 @@ from typing import Any
 
 import numpy as np
 
-from chromadock.replay.pairs import (
-    Pair,
-    attitude_difference_deg,
-    locked,
-    place_difference_m,
-)
-from chromadock.results.detection import Detection
+from chromadock.replay.compared import Compared, Seen
 
 
 @dataclass(frozen=True)
 class Side:
     """One of both runs: ``found`` and ``locked`` frames, when the track locked first, seconds
-    (None for never), and how long a frame took, milliseconds (median, and what 99 of 100 stay
-    below; None where it is not told)."""
+    (None for never), how long a frame took, and how old its picture was when the result was out,
+    milliseconds (median, and what 99 of 100 stay below; None where it is not told)."""
 
     found: int
     locked: int
     first_locked_s: float | None
     processing_ms: float | None
     processing_99_ms: float | None
+    latency_ms: float | None
+    latency_99_ms: float | None
 
 
 @dataclass(frozen=True)
@@ -59,32 +55,45 @@ class Summary:
         return asdict(self)
 
 
-def summarised(pairs: Sequence[Pair]) -> Summary:
-    """The figures of all frames of a replay."""
-    both = [pair for pair in pairs if pair.old is not None]
+def summarised(frames: Sequence[Compared], one_run: bool = True) -> Summary:
+    """The figures of all frames of a replay, or (``one_run`` False) of several ones together,
+    which have no first lock."""
+    both = [(frame.old, frame.new) for frame in frames if frame.old is not None]
     return Summary(
-        frames=len(pairs),
-        not_recorded=len(pairs) - len(both),
-        old=_side([(p.time_s, p.old) for p in both if p.old is not None]),
-        new=_side([(p.time_s, p.new) for p in pairs]),
-        state_differs=sum(p.old is not None and p.old.state != p.new.state for p in both),
-        only_old_locked=sum(locked(p.old) and not locked(p.new) for p in both),
-        only_new_locked=sum(locked(p.new) and not locked(p.old) for p in both),
-        place_m=_spread([place_difference_m(p) for p in both]),
-        attitude_deg=_spread([attitude_difference_deg(p) for p in both]),
+        frames=len(frames),
+        not_recorded=len(frames) - len(both),
+        old=_side([(f.time_s, f.old) for f in frames if f.old is not None], one_run),
+        new=_side([(f.time_s, f.new) for f in frames], one_run),
+        state_differs=sum(old.state != new.state for old, new in both),
+        only_old_locked=sum(old.locked and not new.locked for old, new in both),
+        only_new_locked=sum(new.locked and not old.locked for old, new in both),
+        place_m=_spread([frame.place_m for frame in frames]),
+        attitude_deg=_spread([frame.attitude_deg for frame in frames]),
     )
 
 
-def _side(results: Sequence[tuple[float, Detection]]) -> Side:
-    times_ms = [d.timing_ms["total"] for _, d in results if "total" in d.timing_ms]
-    median, most = np.quantile(times_ms, (0.5, 0.99)).tolist() if times_ms else (None, None)
+def _side(results: Sequence[tuple[float, Seen]], one_run: bool) -> Side:
+    processing_ms, processing_99_ms = _typical([seen.processing_ms for _, seen in results])
+    latency_ms, latency_99_ms = _typical([seen.latency_ms for _, seen in results])
+    locked_s = [time_s for time_s, seen in results if seen.locked]
     return Side(
-        found=sum(d.found for _, d in results),
-        locked=sum(locked(d) for _, d in results),
-        first_locked_s=next((time_s for time_s, d in results if locked(d)), None),
-        processing_ms=median,
-        processing_99_ms=most,
+        found=sum(seen.found for _, seen in results),
+        locked=len(locked_s),
+        first_locked_s=locked_s[0] if locked_s and one_run else None,
+        processing_ms=processing_ms,
+        processing_99_ms=processing_99_ms,
+        latency_ms=latency_ms,
+        latency_99_ms=latency_99_ms,
     )
+
+
+def _typical(times_ms: Sequence[float | None]) -> tuple[float | None, float | None]:
+    """The median, and what 99 of 100 stay below."""
+    told = [time_ms for time_ms in times_ms if time_ms is not None]
+    if not told:
+        return None, None
+    median, most = np.quantile(told, (0.5, 0.99)).tolist()
+    return median, most
 
 
 def _spread(differences: Sequence[float | None]) -> Spread:

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from chromadock.errors import ChromadockError
 
 if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
     from chromadock.results.detection import Detection
     from chromadock.results.pose import Pose
     from chromadock.results.track import Track, TrackedPose
@@ -63,9 +66,8 @@ def of_detection(detection: Detection) -> dict[str, Any]:
 
 def to_detection(content: Mapping[str, Any]) -> Detection:
     """See ``Detection.from_dict``."""
-    from pydantic import TypeAdapter, ValidationError
+    from pydantic import ValidationError
 
-    from chromadock.results.detection import Detection
     from chromadock.validation import explain
 
     told = content.get("schema")
@@ -75,7 +77,7 @@ def to_detection(content: Mapping[str, Any]) -> Detection:
             "read it with the version that wrote it"
         )
     try:
-        return TypeAdapter(Detection).validate_python(_fields(content))
+        return _adapter().validate_python(_fields(content))
     except KeyError as error:
         raise ChromadockError(
             f"a detection without {error.args[0]}: it is not whole, or no detection"
@@ -84,6 +86,16 @@ def to_detection(content: Mapping[str, Any]) -> Detection:
         raise ChromadockError(f"a detection that is none: {explain(error)}") from None
     except (TypeError, AttributeError, ValueError):
         raise ChromadockError("a detection that is none: a key has another form") from None
+
+
+@cache
+def _adapter() -> TypeAdapter[Detection]:
+    """Made once: it takes a thousand times as long as a line."""
+    from pydantic import TypeAdapter
+
+    from chromadock.results.detection import Detection
+
+    return TypeAdapter(Detection)
 
 
 _RENAMED = {"velocity_m_s": "velocity", "turn_rate_rad_s": "turn_rate"}

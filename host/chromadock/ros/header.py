@@ -13,6 +13,9 @@ CAMERA_FRAME = "camera_optical_frame"
 DOCK_FRAME = "dock"
 """The dock's own axes, see ``dock``: z points away from the vehicle that comes."""
 
+VEHICLE_FRAME = "base_link"
+"""The vehicle's body by REP 103 and REP 105: x forward, y left, z up."""
+
 _NS = 1_000_000_000
 
 

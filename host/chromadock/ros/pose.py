@@ -27,7 +27,7 @@ def pose_with_covariance(pose: TrackedPose | Pose | None) -> Fields:
     """
     t, q_wxyz, covariance = _NOWHERE if pose is None else (pose.t, pose.q_wxyz, pose.covariance)
     return {
-        "pose": {"position": _xyz(t), "orientation": _quaternion(q_wxyz)},
+        "pose": {"position": xyz(t), "orientation": quaternion(q_wxyz)},
         "covariance": list(covariance or [0.0] * 36),
     }
 
@@ -50,7 +50,7 @@ def dock_pose_for_nav2(pose: TrackedPose, stamp_ns: int, ids: FrameIds = FRAME_I
     half_turned = (-x, w, z, -y)  # the quaternion times (0, 1, 0, 0)
     return {
         "header": header(stamp_ns, ids.camera),
-        "pose": {"position": _xyz(pose.t), "orientation": _quaternion(half_turned)},
+        "pose": {"position": xyz(pose.t), "orientation": quaternion(half_turned)},
     }
 
 
@@ -61,16 +61,17 @@ def transforms(pose: TrackedPose, stamp_ns: int, ids: FrameIds = FRAME_IDS) -> F
             {
                 "header": header(stamp_ns, ids.camera),
                 "child_frame_id": ids.dock,
-                "transform": {"translation": _xyz(pose.t), "rotation": _quaternion(pose.q_wxyz)},
+                "transform": {"translation": xyz(pose.t), "rotation": quaternion(pose.q_wxyz)},
             }
         ]
     }
 
 
-def _xyz(t: Sequence[float]) -> Fields:
+def xyz(t: Sequence[float]) -> Fields:
+    """``geometry_msgs/Point`` or ``Vector3``."""
     return dict(zip("xyz", t, strict=True))
 
 
-def _quaternion(q_wxyz: Sequence[float]) -> Fields:
-    """ROS keeps w last; by name it does not matter."""
+def quaternion(q_wxyz: Sequence[float]) -> Fields:
+    """``geometry_msgs/Quaternion``; ROS keeps w last; by name it does not matter."""
     return dict(zip("wxyz", q_wxyz, strict=True))

@@ -8,15 +8,17 @@ from pathlib import Path
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
+from chromadock.ros.attitude import attitude_from_imu
 from chromadock.ros.bags import Bag, Topic
 from chromadock.ros.header import stamp_ns_of
 from chromadock.ros.mcap_bag import McapBag, head
 from chromadock.ros.ros_bag import RosBag
-from chromadock.ros.topics import METADATA, START
+from chromadock.ros.topics import ATTITUDE, TOPICS, start_of
 from chromadock.sources.bag_kind import is_mcap
 from chromadock.sources.base import Frame, OnFault, Source
 from chromadock.sources.ros_pictures import COMPRESSED, IMAGE, picture
 from chromadock.text import one_line, plural
+from chromadock.track.attitude import Attitude
 
 _RATE_FRAMES = 10
 """So many stamps tell the frames a second."""
@@ -27,7 +29,8 @@ class BagFrames(Source):
 
     Times count from the start of the run that Chromadock recorded, or from the first picture.
     Where headers have no stamp, when a message was logged counts.  Pictures that cannot be
-    decoded are told, counted and left out.
+    decoded are told, counted and left out.  A picture has the vehicle's attitude where Chromadock
+    recorded one with its stamp.
 
     Parameters
     ----------
@@ -52,6 +55,7 @@ class BagFrames(Source):
 
     def __iter__(self) -> Iterator[Frame]:
         decoded = 0
+        attitudes = self._attitudes()
         start_ns = self._start_ns
         for index, (logged_ns, message) in enumerate(self._bag.messages(self._topic)):
             stamp_ns = stamp_ns_of(message) or logged_ns
@@ -63,7 +67,8 @@ class BagFrames(Source):
                 self._on_fault(f"{error} (skipped)")
                 continue
             decoded += 1
-            yield Frame(image, self._path.name, index, (stamp_ns - start_ns) / 1e9)
+            time_s = (stamp_ns - start_ns) / 1e9
+            yield Frame(image, self._path.name, index, time_s, attitudes.get(stamp_ns))
         if self._bag.cut_short is not None:
             self.cut_short = True
             self._on_fault(
@@ -76,6 +81,25 @@ class BagFrames(Source):
     def close(self) -> None:
         """Let go of the file."""
         self._bag.close()
+
+    def _attitudes(self) -> dict[int, Attitude]:
+        """By the stamp of their frame.
+
+        Raises
+        ------
+        ChromadockError
+            Where one is no attitude.
+        """
+        there = [one for one in self._bag.topics if one.count != 0]
+        if (ATTITUDE, TOPICS[ATTITUDE]) not in [(one.name, one.kind) for one in there]:
+            return {}
+        try:
+            return {
+                stamp_ns_of(message): attitude_from_imu(message)
+                for _, message in self._bag.messages(ATTITUDE)
+            }
+        except ChromadockError as error:
+            raise ChromadockError(f"{self._path}: {ATTITUDE}: {error}") from None
 
     def _rate(self) -> float:
         """Frames a second, by the first few."""
@@ -102,7 +126,7 @@ def open_bag(path: Path, topic: str | None, on_fault: OnFault) -> BagFrames:
     bag: Bag
     if is_mcap(path):
         bag = McapBag(path)
-        start_ns = _start_ns(path)
+        start_ns = start_of(head(path)[1])
     else:
         bag = RosBag(path)
     try:
@@ -127,9 +151,3 @@ def _chosen(bag: Bag, topic: str | None, path: Path) -> Topic:
     names = ", ".join(one.name for one in shown)
     which = "several topics of pictures" if topic is None else f"no pictures in {topic}"
     raise ChromadockError(f"{path}: {which}: give {path}?topic= with one of {names}")
-
-
-def _start_ns(path: Path) -> int | None:
-    """When a recording of Chromadock began."""
-    said = head(path)[1].get(METADATA, {}).get(START, "")
-    return int(said) if said.removeprefix("-").isdecimal() else None

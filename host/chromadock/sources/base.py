@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.choices import DEFAULT_FPS
+from chromadock.track.attitude import Attitude
 
 OnFault = Callable[[str], None]
 """Takes one line about a picture that was skipped, or a video that ends too early; or about
@@ -26,12 +27,13 @@ def ignore(_line: str) -> None:
 class Frame:
     """One picture: ``image`` HxWx3 uint8 BGR, the ``name`` of its file or camera, its
     ``index`` in the source from 0 and its ``time_s``, when it was taken, in seconds from the
-    start."""
+    start.  ``attitude``: the vehicle's at that time, None where nobody told it."""
 
     image: NDArray[np.uint8]
     name: str
     index: int
     time_s: float
+    attitude: Attitude | None = None
 
 
 class Source(ABC):

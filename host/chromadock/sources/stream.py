@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import av
 import numpy as np
+from av.format import Flags
 
 from chromadock.choices import DEFAULT_FPS
 from chromadock.errors import ChromadockError
@@ -23,11 +24,16 @@ _OPTIONS = {
 
 
 class Stream(Grabber):
-    """An opened network stream; stamps are its own presentation times."""
+    """An opened network stream; stamps are its own presentation times.
+
+    Some forms have none, such as a web camera's Motion JPEG; FFmpeg counts 25 pictures a second
+    there, however many come.
+    """
 
     def __init__(self, container: av.container.InputContainer) -> None:
         self._container = container
         self._video = container.streams.video[0]
+        self._stamped = Flags.no_timestamps not in Flags(container.format.flags)
         # Threads that decode whole frames side by side hold back as many frames as they are.
         self._video.codec_context.thread_type = "SLICE"
         rate = self._video.average_rate or self._video.guessed_rate
@@ -53,7 +59,7 @@ class Stream(Grabber):
                 continue  # begun in the middle, or a packet was lost: later ones are whole again
             for frame in frames:
                 image = np.asarray(frame.to_ndarray(format="bgr24"), np.uint8)
-                yield Shot(image, frame.time)
+                yield Shot(image, frame.time if self._stamped else None)
 
 
 def open_stream(url: str, name: str) -> Stream:

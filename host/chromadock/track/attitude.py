@@ -73,6 +73,16 @@ class Attitude:
         return np.asarray(cv2.Rodrigues(R_then_now)[0], np.float64).ravel()
 
 
+def attitude_of(R_world_body: Floats) -> Attitude:
+    """Roll, pitch and yaw, radians, of a rotation: the inverse of ``Attitude.R_world_body``."""
+    R = R_world_body
+    return Attitude(
+        math.atan2(R[2, 1], R[2, 2]),
+        math.asin(max(-1.0, min(1.0, -float(R[2, 0])))),
+        math.atan2(R[1, 0], R[0, 0]),
+    )
+
+
 def expected(attitude: Attitude | None, mounting: Mounting) -> tuple[Floats, Floats]:
     """How a vehicle that faces the dock sees it turned: ``R_camera_dock`` (3, 3), and the (3, 3)
     covariance, radians squared, of small turns from there about the camera's axes.

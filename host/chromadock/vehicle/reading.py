@@ -52,6 +52,15 @@ def settings_of(changes: Mapping[str, Any], name: str = "--set") -> VehicleFile:
     return _validated(name, {}, changes)
 
 
+def with_whole_paths(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Changes whose files are named from the root on, for a process that runs elsewhere."""
+    files = {f"{table}.{key}" for table, key in _FILES}
+    return {
+        key: str(Path(value).absolute()) if key in files and value else value
+        for key, value in changes.items()
+    }
+
+
 def _validated(name: str, content: dict[str, Any], changes: Mapping[str, Any]) -> VehicleFile:
     for dotted, value in changes.items():
         _put(content, dotted, value)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import signal
 import subprocess
 import sys
-import threading
-import time
 from collections.abc import Iterator
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import cv2
@@ -17,6 +15,7 @@ import pytest
 from autopilot_peer import SYSTEM, free_port, udp_peer
 from pymavlink.dialects.v20 import common as mavlink
 from robust_composites import compose
+from web_camera import web_camera
 
 RANGE_M = 2.5
 WATER_BGR = (150, 120, 40)
@@ -41,38 +40,11 @@ def frames(count: int) -> list[bytes]:
     return found
 
 
-class WebCamera(BaseHTTPRequestHandler):
-    """Ten pictures a second for ever."""
-
-    pictures: list[bytes]
-
-    def do_GET(self) -> None:
-        self.send_response(200)
-        self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
-        self.end_headers()
-        k = 0
-        while True:
-            jpeg = self.pictures[k % len(self.pictures)]
-            head = f"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}\r\n\r\n"
-            try:
-                self.wfile.write(head.encode() + jpeg + b"\r\n")
-            except OSError:
-                return
-            k += 1
-            time.sleep(0.1)
-
-    def log_message(self, *_words: object) -> None:
-        """Say nothing."""
-
-
 @pytest.fixture(scope="module")
 def camera() -> Iterator[str]:
-    WebCamera.pictures = frames(8)
-    server = ThreadingHTTPServer(("127.0.0.1", 0), WebCamera)
-    server.daemon_threads = True
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}/video"
-    server.shutdown()
+    pictures = itertools.cycle(frames(8))
+    with web_camera(lambda: next(pictures)) as address:
+        yield address
 
 
 def test_a_vehicles_autopilot_is_told_where_the_dock_is(camera: str, tmp_path: Path) -> None:

@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import common as mavlink
 
 from chromadock import Attitude
-from chromadock.autopilot.place import ATTITUDE_ERROR_RAD, attitude_of
+from chromadock.autopilot.place import ATTITUDE_ERROR_RAD
 from chromadock.autopilot.receivers import COPTER, PX4, ROVER, SUB
 from chromadock.autopilot.understood import understood
 from chromadock.autopilot.vision import vision_message
 from chromadock.autopilot.wire import decoded
+from chromadock.track.attitude import attitude_of
 
 GOLDEN = [
     # Dock in true FRD; heading, pitch, roll in degrees; the vehicle from the dock, by hand.

@@ -60,10 +60,13 @@ def run(
     docs/configuration.md has every key of the file.
     """
     from chromadock.cli.run_vehicle import run_once, run_with_retries
+    from chromadock.output.addresses import check_output
     from chromadock.toml_file import change
 
     changes = dict(change(text, "camera.source=1") for text in set_ or [])
     if record is not None:
         changes["outputs.record"] = str(record)
+    for text in out or []:
+        check_output(text)  # a slip there is no fault that passes
     run_it = run_with_retries if retry else run_once
     raise typer.Exit(run_it(vehicle, changes, out or [], json=json, dry_run=dry_run))

@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from chromadock.back_off import FIRST_RETRY_S, LONGEST_RETRY_S
+from chromadock.cli.config import write_shipped_file
 from chromadock.cli.detect_frames import detect_frames
 from chromadock.cli.exit_status import Terminated
 from chromadock.cli.report import Report
 from chromadock.errors import ChromadockError
 from chromadock.output import ResultOutput, Surroundings, open_output
-from chromadock.output.page import PageOutput
+from chromadock.output.page.output import PageOutput
 from chromadock.output.run_setup import RunSetup
 from chromadock.sources import open_source
 from chromadock.vehicle.building import camera_of, detector_of, dock_of, outputs_of
-from chromadock.vehicle.manual import write_shipped_file
 from chromadock.vehicle.reading import read_vehicle
 
 _LOOK_S = 0.2

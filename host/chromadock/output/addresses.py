@@ -93,7 +93,7 @@ def _page(text: str, place: str) -> Opener:
         )
 
     def opened(around: Surroundings) -> ResultOutput:
-        from chromadock.output.page import PageOutput  # takes long to load
+        from chromadock.output.page.output import PageOutput  # takes long to load
 
         page = PageOutput(host or "127.0.0.1", port)
         page.begin(around.setup)

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import json
 import textwrap
-from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from chromadock.errors import ChromadockError
-from chromadock.output.base import cannot_write
 from chromadock.validation import Wanted
 from chromadock.vehicle.keys import TEXT_IN_QUOTES, VehicleFile
 from chromadock.vehicle.reading import tables
@@ -35,23 +32,6 @@ def shipped_file() -> str:
             lines.append(f"{sign}{key} = {toml_value(field.default)}")
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)
-
-
-def write_shipped_file(path: Path) -> None:
-    """Write ``shipped_file`` where no file is yet.
-
-    Raises
-    ------
-    ChromadockError
-        Where there is one, or none can be.
-    """
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(shipped_file())
-    except FileExistsError:
-        raise ChromadockError(f"{path}: is there already: give another name") from None
-    except OSError as error:
-        raise cannot_write(path, error) from None
 
 
 def page() -> str:

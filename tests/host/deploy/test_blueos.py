@@ -26,7 +26,7 @@ from autopilot_peer import free_port
 from dockerfile import copied, exec_form, instructions, labels, runs
 from web_camera import web_camera
 
-from chromadock.page.blueos import service
+from chromadock.output.page.blueos import service
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCKERFILE = ROOT / "deploy" / "blueos" / "Dockerfile"

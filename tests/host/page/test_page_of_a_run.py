@@ -24,7 +24,7 @@ from browser import open_browser, requests, why_no_browser
 from web_camera import RANGE_M, web_camera
 
 from chromadock import Detection
-from chromadock.page.server import MOST_CLIENTS
+from chromadock.output.page.server import MOST_CLIENTS
 from chromadock.ros.mcap_bag import McapBag
 from chromadock.ros.topics import RECORD
 from chromadock.vehicle.reading import read_vehicle
@@ -197,6 +197,14 @@ def test_with_retry_nothing_at_fault_ends_the_run_and_its_page_says_what(
         assert until(port, tracking)["trouble"] is None
         run.send_signal(signal.SIGTERM)
         assert run.wait(5) == 0
+
+
+def test_a_slip_in_an_output_is_refused_with_retry_too(tmp_path: Path) -> None:
+    with running(tmp_path, "--out", "pigeon:home", "--retry") as run:
+        assert run.stderr is not None
+        said = run.stderr.read()
+        assert run.wait(10) == 2
+    assert said.count("\n") == 1 and "pigeon:home: no such output" in said
 
 
 def test_a_port_that_is_taken_is_told_in_a_line(tmp_path: Path) -> None:

@@ -1,16 +1,22 @@
 from __future__ import annotations
 
+import contextlib
 import socket
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from autopilot_peer import free_port
 
 from chromadock.output import Surroundings, open_output
-from chromadock.page.picture import PERIOD_S, Picture
-from chromadock.page.status import STALE_S, Status
+from chromadock.output.page import server
+from chromadock.output.page.picture import PERIOD_S, Picture
+from chromadock.output.page.status import STALE_S, Status
+from chromadock.output.run_setup import RunSetup
 from chromadock.results.detection import Background, Detection, Marker
 from chromadock.sources import Frame
+from chromadock.vehicle.reading import settings_of
 
 RESULT = Detection(
     "not_found", Background((10, 100, 90), 170.0, 0.8), Marker(None, None), None, 0.0
@@ -66,3 +72,29 @@ def test_only_who_asks_for_it_lets_other_computers_see_the_page(
         for address, can in (("127.0.0.1", True), ("127.0.0.2", others_can)):
             with socket.socket() as client:
                 assert (client.connect_ex((address, port)) == 0) is can
+
+
+def test_a_client_that_neither_asks_nor_reads_gives_up_its_place(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Half of them never ask, half never read a recording that fills every buffer."""
+    monkeypatch.setattr(server._Handler, "timeout", 0.5)
+    dive = tmp_path / "dive.mcap"
+    with dive.open("wb") as file:
+        file.truncate(64_000_000)
+    setup = RunSetup(settings_of({"outputs.record": str(dive)}), None)
+    port = free_port(socket.SOCK_STREAM)
+    with (
+        open_output(f"http:{port}", Surroundings(setup, print)),
+        contextlib.ExitStack() as stack,
+    ):
+        for number in range(server.MOST_CLIENTS):
+            client = stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+            if number % 2:
+                client.send(b"GET /recordings/dive.mcap HTTP/1.0\r\n\r\n")
+        late = stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+        assert late.recv(1) == b""  # turned away
+        time.sleep(1.5)
+        later = stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+        later.send(b"GET /healthz HTTP/1.0\r\n\r\n")
+        assert later.recv(9) == b"HTTP/1.0 "

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 
+from chromadock.output.page.server import Server
+from chromadock.output.page.status import Status
 from chromadock.output.results import ResultOutput
 from chromadock.output.run_setup import RunSetup
-from chromadock.page.server import Server
-from chromadock.page.status import Status
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame
 

@@ -19,7 +19,8 @@ def recordings(setup: RunSetup | None) -> dict[str, Path]:
             continue
         named = Path(place)
         numbered = re.compile(rf"{re.escape(named.stem)}(-\d+)?{re.escape(named.suffix)}")
-        for path in named.resolve().parent.iterdir():
+        folder = named.resolve().parent
+        for path in folder.iterdir() if folder.is_dir() else ():
             if numbered.fullmatch(path.name) and path.is_file():
                 found[path.name] = path
     return dict(sorted(found.items()))

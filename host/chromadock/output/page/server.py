@@ -11,9 +11,9 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 from chromadock.errors import ChromadockError
-from chromadock.page.answers import answer
-from chromadock.page.picture import Picture
-from chromadock.page.status import Status
+from chromadock.output.page.answers import answer
+from chromadock.output.page.picture import Picture
+from chromadock.output.page.status import Status
 
 MOST_CLIENTS = 16
 """At once; more are turned away."""

@@ -10,9 +10,9 @@ import cv2
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
+from chromadock.output.page.status import Newest
 from chromadock.output.run_setup import RunSetup
 from chromadock.overlay import draw_seen
-from chromadock.page.status import Newest
 from chromadock.vehicle.building import dock_of
 
 PERIOD_S = 0.2

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from chromadock.page.blueos import service
-from chromadock.page.picture import Picture
-from chromadock.page.recordings import recordings
-from chromadock.page.status import Status
+from chromadock.output.page.blueos import service
+from chromadock.output.page.picture import Picture
+from chromadock.output.page.recordings import recordings
+from chromadock.output.page.status import Status
 
 JSON, HTML, TEXT = "application/json", "text/html; charset=utf-8", "text/plain; charset=utf-8"
 
@@ -35,7 +35,9 @@ def answer(path: str, status: Status, picture: Picture, now_s: float) -> Answer:
     """
     place = unquote(path.partition("?")[0])
     if place == "/":
-        return Answer(200, HTML, (resources.files("chromadock.page") / "index.html").read_bytes())
+        return Answer(
+            200, HTML, (resources.files("chromadock.output.page") / "index.html").read_bytes()
+        )
     if place == "/status.json":
         found = {**status.record(now_s), "recordings": _recordings(status)}
         return Answer(200, JSON, _json(found))

@@ -12,7 +12,9 @@ Exit status: 0 all well, 1 a fault, 3 no GStreamer here.
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
+import math
 import os
 import signal
 import socket
@@ -27,7 +29,7 @@ from typing import Any
 
 import numpy as np
 from closed_loop_autopilot import Autopilot
-from closed_loop_pictures import Duties, Film
+from closed_loop_pictures import Duties, Film, lamps
 from simulator import Simulator
 from soak import resident_kib
 
@@ -43,6 +45,8 @@ GIVE_UP_S = 2.0
 AGAIN_S = 4.0
 MOST_RANGE_ERROR = 0.05
 """In 99 of 100 messages."""
+MOST_CHANGE = 0.1
+"""Of a lamp's power, from what the pictures are rendered with: the water moves a little."""
 MOST_GROWTH_KIB = 16_384
 START_S = 40.0
 
@@ -62,6 +66,7 @@ class ClosedLoop:
         self.taken: list[tuple[float, int, str]] = []
         self.memory_kib: list[tuple[float, int]] = []
         self.status: dict[str, Any] = {}
+        self.changed = 0.0
 
     def run(self) -> None:
         """All of it."""
@@ -146,19 +151,25 @@ class ClosedLoop:
     ) -> None:
         """For the time that was asked for: show what the dock's lamps do, and measure."""
         self.start_s = time.monotonic()
-        self.dark_s = self.start_s + self.seconds / 2
-        dark, shown = False, "lit"
+        out_s, shown = self.start_s + self.seconds / 2, "lit"
+        commanded, dark_s = "lit", math.inf
         used_s = _processor_s(run.pid)
         assert camera.stdin is not None
         while (now_s := time.monotonic()) < self.start_s + self.seconds and run.poll() is None:
-            if dark != (self.dark_s <= now_s < self.dark_s + DARK_S):
-                dark = not dark
-                client.led_raw(0, 0, 0) if dark else client.led_auto()
+            if commanded == "lit" and out_s <= now_s < dark_s:
+                client.led_raw(0, 0, 0)
+                commanded = "dark"
+            elif commanded == "dark" and now_s > dark_s + DARK_S:
+                client.led_auto()
+                commanded = "lit"
             # What the dock reports, not what it was told, is shown.
-            lamps = tuple(client.status().duty)
-            which = "lit" if lamps == duties else "dark"
+            light = lamps(client.status().duty)
+            which = "lit" if any(light) else "dark"
+            if any(light):
+                self.changed = max(self.changed, *np.abs(np.subtract(light, lamps(duties))))
             if which != shown:
                 shown = which
+                dark_s = min(dark_s, now_s) if which == "dark" else dark_s
                 camera.stdin.write(f"{which}\n")
                 camera.stdin.flush()
             self.memory_kib.append((now_s - self.start_s, resident_kib(run.pid)))
@@ -176,6 +187,7 @@ class ClosedLoop:
         errors = np.abs(targets[:, 2] / true_m - 1)
         self._figures(targets, latencies_ms, errors)
         self._faults(targets, errors)
+        self._darkness(targets[:, 0])
 
     def _figures(self, targets: Any, latencies_ms: Any, errors: Any) -> None:
         median, most = np.quantile(latencies_ms, (0.5, 0.99))
@@ -198,24 +210,37 @@ class ClosedLoop:
     def _faults(self, targets: Any, errors: Any) -> None:
         if (most := np.quantile(errors, 0.99)) > MOST_RANGE_ERROR:
             self.faults.append(f"ranges were told that are {100 * most:.0f} % off")
-        dark = (targets[:, 0] > self.dark_s + GIVE_UP_S) & (targets[:, 0] < self.dark_s + DARK_S)
-        if dark.any():
-            self.faults.append(f"{dark.sum()} targets were told of a dock that is dark")
-        lit_s = self.dark_s + DARK_S
-        again = targets[targets[:, 0] > lit_s, 0]
-        if not len(again) or again[0] > lit_s + AGAIN_S:
-            self.faults.append("the dock was not told again once it was lit")
         lit = self.lasted_s - DARK_S - AGAIN_S
         if len(targets) < self.least_hz * lit:
             self.faults.append(
                 f"only {len(targets)} targets: fewer than {self.least_hz:g} a second"
             )
+        if self.changed > MOST_CHANGE:
+            self.faults.append(f"the dock's light changed by {100 * self.changed:.0f} %")
         early, late = self._memory_kib()
         if late - early > MOST_GROWTH_KIB:
             self.faults.append(f"memory grew by {late - early} KiB")
         for name in ("dive.mcap", "seen.mp4"):
             if not (self.folder / name).is_file():
                 self.faults.append(f"{name} was not written")
+
+    def _darkness(self, told_s: Any) -> None:
+        """Whether the vehicle is silent while its pictures show a dark dock, and only then.
+
+        ``told_s``: when the autopilot was told of the dock.
+        """
+        dark = [taken_s for taken_s, _, which in self.taken if which == "dark"]
+        shown = [which for _, _, which in self.taken]
+        changes = sum(one != next_ for one, next_ in itertools.pairwise(shown))
+        if changes != 2:
+            self.faults.append(f"the pictures changed {changes} times between lit and dark")
+            return
+        told = (told_s > dark[0] + GIVE_UP_S) & (told_s < dark[-1])
+        if told.any():
+            self.faults.append(f"{told.sum()} targets were told of a dock that is dark")
+        again = told_s[told_s > dark[-1]]
+        if not len(again) or again[0] > dark[-1] + AGAIN_S:
+            self.faults.append("the dock was not told again once it was lit")
 
     def _settled_s(self) -> float:
         """When all is loaded: a minute, or a third of a short run."""
@@ -228,15 +253,15 @@ class ClosedLoop:
 
 
 def _settled(client: Any) -> Duties:
-    """The duties of the dock's lamps, once its mean of the colour is full."""
-    last, since_s, end_s = None, time.monotonic(), time.monotonic() + 30
+    """The duties of the dock's lamps, once they have hardly changed for two seconds."""
+    red, green, blue = client.status().duty
+    since_s, end_s = time.monotonic(), time.monotonic() + 30
     while time.monotonic() < end_s:
-        status = client.status()
-        duties = tuple(status.duty)
-        if duties != last:
-            last, since_s = duties, time.monotonic()
-        if time.monotonic() - since_s > 2:
-            return duties[0], duties[1], duties[2]
+        duties = client.status().duty
+        if np.abs(np.subtract(lamps(duties), lamps((red, green, blue)))).max() > MOST_CHANGE / 5:
+            (red, green, blue), since_s = duties, time.monotonic()
+        if any(lamps((red, green, blue))) and time.monotonic() - since_s > 2:
+            return red, green, blue
         time.sleep(0.1)
     raise RuntimeError("the dock does not settle on a colour")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,6 +21,12 @@ CHANGES = {
     "vehicle.approach": {"to_m": 2.2, "duration_s": SECONDS},
 }
 Duties = tuple[int, int, int]
+
+
+def lamps(duties: Sequence[int]) -> tuple[float, float, float]:
+    """What the dock's lamps give at these duties, share of full power, R, G, B."""
+    red, green, blue = duties
+    return power_share((red, green, blue), int(lib.LED_FULL))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +64,7 @@ class Film:
     def write(self, path: Path, duties: Duties | None) -> list[float]:
         """What the vehicle sees while the dock's lamps have these duties, None for dark: BGR
         frames one after the other.  Returns the true ranges, metres, by frame."""
-        share = (0.0, 0.0, 0.0) if duties is None else power_share(duties, int(lib.LED_FULL))
+        share = (0.0, 0.0, 0.0) if duties is None else lamps(duties)
         ranges_m = []
         with path.open("wb") as file:
             for step in self.steps:

@@ -29,9 +29,11 @@ ARM64 = [f"manylinux_2_{glibc}_aarch64" for glibc in range(17, 37)] + ["manylinu
 PYTHON = "3.11"
 USE = """
 import cv2, numpy, pathlib, subprocess, sys
+from importlib import resources
+assert resources.files("chromadock.output.page").joinpath("index.html").is_file()
 cv2.imwrite("0.png", numpy.full((240, 320, 3), (140, 110, 30), numpy.uint8))
 pathlib.Path("v.toml").write_text('[camera]\\nsource = "0.png"\\n')
-outs = ["json:log.jsonl", "mcap:dive.mcap", "http:18642"]
+outs = ["json:log.jsonl", "mcap:dive.mcap", "http:18644"]
 command = ["chromadock", "run", "v.toml", *(x for out in outs for x in ("--out", out))]
 sys.exit(subprocess.run(command, stdout=subprocess.DEVNULL).returncode)
 """

@@ -12,6 +12,7 @@ import pytest
 from closed_loop import DARK_S, ClosedLoop
 
 SECONDS = 20.0
+DARK = (SECONDS / 2, SECONDS / 2 + DARK_S)
 
 
 def test_twenty_seconds_from_the_docks_decision_to_the_autopilot(
@@ -30,12 +31,18 @@ def test_twenty_seconds_from_the_docks_decision_to_the_autopilot(
     assert {which for *_, which in run.taken} == {"lit", "dark"}
 
 
-def judged(tmp_path: Path, targets: list[tuple[float, float, float]], grown_kib: int = 0) -> str:
+def judged(
+    tmp_path: Path,
+    targets: list[tuple[float, float, float]],
+    grown_kib: int = 0,
+    goes_out: bool = True,
+) -> str:
     """What the judge says of these messages of a dock that stands at 2 m."""
     run = ClosedLoop(tmp_path, SECONDS)
-    run.start_s, run.dark_s, run.lasted_s, run.processor_s = 0.0, SECONDS / 2, SECONDS, 1.0
+    run.start_s, run.lasted_s, run.processor_s = 0.0, SECONDS, 1.0
     run.memory_kib = [(s, 100_000 + grown_kib * (s > SECONDS / 2)) for s in np.arange(0, SECONDS)]
-    run.taken = [(k / closed_loop.FPS, 0, "lit") for k in range(round(SECONDS * closed_loop.FPS))]
+    times = np.arange(0, SECONDS, 1 / closed_loop.FPS)
+    run.taken = [(t, 0, "dark" if DARK[0] <= t < DARK[1] and goes_out else "lit") for t in times]
     run.status = {"frames": 1, "dropped": 0}
     run.autopilot = SimpleNamespace(heard=SimpleNamespace(targets=targets, counts={}))  # type: ignore[assignment]
     for name in ("dive.mcap", "seen.mp4"):
@@ -47,7 +54,7 @@ def judged(tmp_path: Path, targets: list[tuple[float, float, float]], grown_kib:
 def told(but: Any = lambda at_s: True, range_m: float = 2.0) -> list[tuple[float, float, float]]:
     """A message a picture, 50 ms after it, while there is light and where ``but`` lets it."""
     times = np.arange(1, SECONDS - 0.1, 1 / closed_loop.FPS)
-    lit = [t for t in times if not SECONDS / 2 <= t < SECONDS / 2 + DARK_S and but(t)]
+    lit = [t for t in times if not DARK[0] <= t < DARK[1] and but(t)]
     return [(t + 0.05, t, range_m) for t in lit]
 
 
@@ -72,3 +79,7 @@ def test_the_judge_sees_what_is_wrong(
 
 def test_the_judge_sees_memory_that_grows(tmp_path: Path) -> None:
     assert "memory grew" in judged(tmp_path, told(), closed_loop.MOST_GROWTH_KIB + 1)
+
+
+def test_the_judge_sees_pictures_that_do_not_follow_the_dock(tmp_path: Path) -> None:
+    assert "changed 0 times" in judged(tmp_path, told(), goes_out=False)

@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo results test hil soak bench fuzz lint format generate contrast clean setup-demo setup-bench
+.PHONY: help setup demo results test hil soak image bench fuzz lint format generate contrast clean setup-demo setup-bench
 
 help: ## List these targets
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' Makefile | expand -t 12
@@ -28,10 +28,14 @@ test: setup ## Run all checks and all tests
 hil: setup ## The hardware tests on the simulated dock; on a board: PORT=/dev/ttyUSB0 [BAUD=...] [FLASH=1]
 	@$(VENV)/python tools/hardware.py $(if $(PORT),--port=$(PORT)) $(if $(BAUD),--baud=$(BAUD)) $(if $(FLASH),--flash)
 
-soak: setup ## A minute of an RTSP camera, 20 kills of a recording, ten minutes of a simulated dock on a bad line; SOAK_SECONDS=20 for a short run
+soak: setup ## A minute of an RTSP camera, 20 kills of a recording, ten minutes of a simulated dock on a bad line, ten of the closed loop; SOAK_SECONDS=20 for a short run
 	@CHROMADOCK_STREAM_S=$(or $(SOAK_SECONDS),60) $(VENV)/python -m pytest -q -s tests/host/test_streams.py -k behind
 	@CHROMADOCK_KILLS=20 $(VENV)/python -m pytest -q tests/host/test_recording.py -k kill
 	@$(VENV)/python tools/soak.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
+	@$(VENV)/python tools/closed_loop.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
+
+image: setup ## The BlueOS extension's commands in fresh environments, and its wheels for arm64; needs the network
+	@$(VENV)/python tools/image.py
 
 setup-bench:
 	@$(PYTHON) tools/setup bench

@@ -60,20 +60,39 @@ def draw_overlay(
     """
     if frame.ndim != 3 or frame.shape[2] != 3 or mask.shape != frame.shape[:2]:
         raise ValueError(f"frame {frame.shape} and mask {mask.shape} do not fit")
-    left = _panel(frame)
+    left = _seen(frame, detection, camera, dock)
     right = _panel(np.where(mask[:, :, None] != 0, frame, np.uint8(0)).astype(np.uint8))
     for blob in detection.blobs:
         _draw_blob(right, blob)
-        if blob.accepted:
-            _draw_blob(left, blob)
-    pose = _pose(detection)
-    if pose is not None:
-        _draw_axes(left, pose, camera, dock)
-    if detection.markers:
-        _draw_names(left, detection.markers)
     above = np.concatenate([left.image, _filled(left.height, _GAP), right.image], axis=1)
     strip = _strip(above.shape[1], detection, left.text_px)
     return np.concatenate([above, strip], axis=0)
+
+
+def draw_seen(
+    frame: NDArray[np.uint8], detection: Detection, camera: CameraModel, dock: DockGeometry
+) -> NDArray[np.uint8]:
+    """Draw the left half of ``draw_overlay`` alone: what was found, on the frame.
+
+    Parameters and the picture's kind are those of ``draw_overlay``.
+    """
+    return _seen(frame, detection, camera, dock).image
+
+
+def _seen(
+    frame: NDArray[np.uint8], detection: Detection, camera: CameraModel, dock: DockGeometry
+) -> Canvas:
+    """The frame with accepted blobs, the pose axes and the markers' names."""
+    panel = _panel(frame)
+    for blob in detection.blobs:
+        if blob.accepted:
+            _draw_blob(panel, blob)
+    pose = _pose(detection)
+    if pose is not None:
+        _draw_axes(panel, pose, camera, dock)
+    if detection.markers:
+        _draw_names(panel, detection.markers)
+    return panel
 
 
 def _filled(height: int, width: int) -> NDArray[np.uint8]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 import signal
 import subprocess
 import sys
@@ -121,32 +120,3 @@ def test_a_run_that_is_stopped_leaves_a_whole_recording(
     assert seen <= len(list(bag.messages(RECORD))) <= seen + 1
     assert bag.cut_short is None
     assert time.time() - dive.stat().st_mtime < 60
-
-
-MANUAL = Path(__file__).resolve().parents[2] / "docs" / "recording.md"
-
-
-def test_every_command_of_the_manual_runs(
-    folder: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    """In its order, in a folder that has what they name."""
-    monkeypatch.chdir(tmp_path)
-    video = cv2.VideoWriter("video.mp4", cv2.VideoWriter.fourcc(*"mp4v"), 20, (640, 480))
-    for k in range(8):
-        video.write(cv2.imread(str(folder / "pictures" / f"{k}.png")))
-    video.release()
-    Path("cam.yaml").write_text(CAMERA_YAML)
-    Path("vehicle.toml").write_text('[camera]\nsource = "video.mp4"\ncalibration = "cam.yaml"\n')
-    shown = [
-        shlex.split(line, comments=True)[1:]
-        for line in MANUAL.read_text().splitlines()
-        if line.startswith(".venv/bin/chromadock")
-    ]
-    assert len(shown) == 7
-    for command in shown:
-        done = chromadock(capsys, *command)
-        assert done.status == 0, (command, done.err)
-    assert {"dive.mcap", "dive-2.mcap", "compared", "all"} <= {p.name for p in tmp_path.iterdir()}

@@ -146,6 +146,9 @@ def test_nobody_who_listens_is_no_fault() -> None:
         ("udp:9000", "give udp:HOST:PORT"),
         ("mavlink:udpin:0.0.0.0:14550", "no receiver: add ?receiver="),
         ("udp:host:99999", "give udp:HOST:PORT"),
+        ("http:99999", "give http:PORT for this computer alone"),
+        ("http:localhost", "give http:PORT for this computer alone"),
+        ("http:no.such.host.invalid:8642", "cannot listen there"),
         ("udp:no.such.host.invalid:9000", "no such host"),
     ],
 )

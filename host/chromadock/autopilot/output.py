@@ -171,6 +171,12 @@ class AutopilotOutput:
             return None
         return min(self._latencies_s)
 
+    @property
+    def heard(self) -> bool:
+        """Whether the port is open and the vehicle's heartbeat came of late."""
+        with self._shared:
+            return self._open and self._companion.present(self._clock())
+
     def close(self) -> None:
         """End the thread and let go of the port."""
         if self._closing.is_set():

@@ -25,7 +25,7 @@ from chromadock.cli.exit_status import (
     EXIT_BAD_INPUT,
     EXIT_BROKEN_PIPE,
     EXIT_INTERRUPTED,
-    EXIT_TERMINATED,
+    Terminated,
 )
 from chromadock.cli.replay import replay
 from chromadock.cli.ros import RosCommand, ros
@@ -86,7 +86,8 @@ def main() -> NoReturn:
     """Run the command line; the only place that turns faults into a line and a status.
 
     Exit status: 0 all well, 1 some frames could not be read, 2 the input or the arguments
-    are at fault, 130 Ctrl-C, 141 the reader of the output went away, 143 terminated.
+    are at fault, 130 Ctrl-C, 141 the reader of the output went away, 143 terminated (0 while a
+    camera or a stream is watched, which has no other end).
     """
     signal.signal(signal.SIGTERM, _terminate)
     for stream in (sys.stdout, sys.stderr):
@@ -134,4 +135,4 @@ def _complain(line: str) -> None:
 
 def _terminate(_signal: int, _frame: FrameType | None) -> NoReturn:
     """Leave by way of the context managers, so that nothing half-written stays."""
-    sys.exit(EXIT_TERMINATED)
+    raise Terminated

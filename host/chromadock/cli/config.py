@@ -15,17 +15,7 @@ _File = Annotated[Path, typer.Argument(metavar="VEHICLE.toml", show_default=Fals
 @config.command("init")
 def init(path: _File) -> None:
     """Write a file with every key at its default, and what it means."""
-    from chromadock.errors import ChromadockError
-    from chromadock.output.base import cannot_write
-    from chromadock.vehicle.manual import shipped_file
-
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(shipped_file())
-    except FileExistsError:
-        raise ChromadockError(f"{path}: is there already: give another name") from None
-    except OSError as error:
-        raise cannot_write(path, error) from None
+    write_shipped_file(path)
     print(f"wrote {path}: set camera.source and camera.calibration first")
 
 
@@ -53,3 +43,24 @@ def show(path: _File) -> None:
 
     for key, value, changed in effective(read_vehicle(path)):
         print(f"{'*' if changed else ' '} {key} = {value}")
+
+
+def write_shipped_file(path: Path) -> None:
+    """Write the file with every key at its default, where there is none yet.
+
+    Raises
+    ------
+    ChromadockError
+        Where there is one, or none can be.
+    """
+    from chromadock.errors import ChromadockError
+    from chromadock.output.base import cannot_write
+    from chromadock.vehicle.manual import shipped_file
+
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(shipped_file())
+    except FileExistsError:
+        raise ChromadockError(f"{path}: is there already: give another name") from None
+    except OSError as error:
+        raise cannot_write(path, error) from None

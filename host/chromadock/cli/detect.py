@@ -81,7 +81,7 @@ def detect(
         typer.Option(
             metavar="KIND:PLACE",
             help="Where else each result goes, as often as you like: json:FILE, mcap:FILE, "
-            "udp:HOST:PORT, mavlink:ADDRESS?receiver=NAME.",
+            "udp:HOST:PORT, http:[HOST:]PORT (a page), mavlink:ADDRESS?receiver=NAME.",
             show_default=False,
         ),
     ] = None,

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from chromadock.camera import CameraModel
-from chromadock.cli.exit_status import EXIT_INTERRUPTED, EXIT_SKIPPED
+from chromadock.cli.exit_status import EXIT_INTERRUPTED, EXIT_SKIPPED, Terminated
 from chromadock.cli.report import Report
 from chromadock.detector import Detector
 from chromadock.dock import DockGeometry
@@ -32,27 +32,37 @@ def detect_frames(
     model: CameraModel | None,
     geometry: DockGeometry,
     overlay: Path | None,
-    outputs: Sequence[str],
+    outputs: Sequence[str | ResultOutput],
     around: Surroundings,
     report: Report,
 ) -> int:
-    """Look for the dock in all ``frames``, tell ``report`` and the ``outputs``, close them all; the
-    exit status.  ``around``: what the outputs need to know of the run."""
+    """Look for the dock in all ``frames``, and tell ``report`` and the ``outputs``.
+
+    All are closed at the end, but for outputs that are open already.  ``around``: what the outputs
+    need to know of the run.  Returns the exit status.
+    """
     with ExitStack() as stack:
         stack.enter_context(frames)
         pictures = None
         if overlay is not None:
             _check_apart(overlay, frames)
             pictures = stack.enter_context(open_overlay(overlay, frames.count, frames.fps))
-        results = [
-            stack.enter_context(Guarded(open_output(text, around), around.tell)) for text in outputs
-        ]
+        results = [_guarded(output, around, stack) for output in outputs]
+        for output in results:
+            output.beside({str(name): other for name, other in zip(outputs, results, strict=True)})
         stack.enter_context(report.progress(frames.count))
-        interrupted = _run(frames, detector, model, geometry, pictures, results, report)
+        stopped = _run(frames, detector, model, geometry, pictures, results, report)
     report.summary(frames.errors, frames.dropped)
-    if interrupted:
-        return EXIT_INTERRUPTED
+    if stopped is not None:
+        return stopped
     return EXIT_SKIPPED if frames.errors or frames.cut_short else 0
+
+
+def _guarded(output: str | ResultOutput, around: Surroundings, stack: ExitStack) -> Guarded:
+    """The output, open; one that is opened here is closed with the ``stack``."""
+    if isinstance(output, ResultOutput):
+        return Guarded(output, around.tell)
+    return stack.enter_context(Guarded(open_output(output, around), around.tell))
 
 
 def _check_apart(overlay: Path, frames: Source) -> None:
@@ -69,8 +79,9 @@ def _run(
     pictures: OverlayOutput | None,
     results: Sequence[ResultOutput],
     report: Report,
-) -> bool:
-    """Frame after frame; True where Ctrl-C ended a live source, which is its only end."""
+) -> int | None:
+    """Frame after frame; the exit status where Ctrl-C or SIGTERM ended a live source, which has no
+    other end: what was written so far is kept then."""
     try:
         for taken in frames:
             frame = _with_attitude(taken, results, _age_s(frames, taken))
@@ -79,11 +90,11 @@ def _run(
             for output in results:
                 output.write(frame, detection, age_s)
             report.frame(frame, detection, age_s)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Terminated) as stop:
         if not frames.live:
             raise
-        return True
-    return False
+        return EXIT_INTERRUPTED if isinstance(stop, KeyboardInterrupt) else 0
+    return None
 
 
 def _with_attitude(frame: Frame, results: Sequence[ResultOutput], age_s: float | None) -> Frame:

@@ -12,3 +12,10 @@ EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 128 + signal.SIGINT
 EXIT_TERMINATED = 128 + signal.SIGTERM
 EXIT_BROKEN_PIPE = 128 + signal.SIGPIPE
+
+
+class Terminated(SystemExit):
+    """Raised where the program is when somebody terminates it."""
+
+    def __init__(self) -> None:
+        super().__init__(EXIT_TERMINATED)

@@ -29,6 +29,22 @@ def run(
         bool,
         typer.Option("--dry-run", help="Send an autopilot nothing: say what it would understand."),
     ] = False,
+    out: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KIND:PLACE",
+            help="Where else each result goes, beside outputs.results; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    retry: Annotated[
+        bool,
+        typer.Option(
+            "--retry",
+            help="Where the file or the camera is at fault, say so, on the pages of --out http: "
+            "too, and try again instead of ending; a file that is missing is written.",
+        ),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
     record: Annotated[
         Path | None,
@@ -43,38 +59,14 @@ def run(
 
     docs/configuration.md has every key of the file.
     """
-    from chromadock.cli.detect_frames import detect_frames
-    from chromadock.cli.report import Report
-    from chromadock.output import Surroundings
-    from chromadock.output.run_setup import RunSetup
-    from chromadock.sources import open_source
+    from chromadock.cli.run_vehicle import run_once, run_with_retries
+    from chromadock.output.addresses import check_output
     from chromadock.toml_file import change
-    from chromadock.vehicle.building import (
-        camera_of,
-        camera_settings_of,
-        detector_of,
-        dock_of,
-        outputs_of,
-    )
-    from chromadock.vehicle.reading import read_vehicle
 
     changes = dict(change(text, "camera.source=1") for text in set_ or [])
     if record is not None:
         changes["outputs.record"] = str(record)
-    settings = read_vehicle(vehicle, changes)
-    camera, dock = camera_of(settings), dock_of(settings)
-    detector = detector_of(settings, camera, dock)
-    report = Report(json=json, calibrated=camera is not None)
-    frames = open_source(
-        settings.camera.source,
-        on_fault=report.fault,
-        on_note=report.note,
-        delay_s=settings.camera.delay_s,
-        camera=camera_settings_of(settings),
-    )
-    overlay = Path(settings.outputs.overlay) if settings.outputs.overlay else None
-    outputs = outputs_of(settings)
-    around = Surroundings(RunSetup(settings, camera), report.notice, dry_run)
-    raise typer.Exit(
-        detect_frames(frames, detector, camera, dock, overlay, outputs, around, report)
-    )
+    for text in out or []:
+        check_output(text)  # a slip there is no fault that passes
+    run_it = run_with_retries if retry else run_once
+    raise typer.Exit(run_it(vehicle, changes, out or [], json=json, dry_run=dry_run))

@@ -14,7 +14,7 @@ from chromadock.output.results import ResultOutput
 if TYPE_CHECKING:
     from chromadock.output.run_setup import RunSetup
 
-KINDS = "json:FILE, mcap:FILE, udp:HOST:PORT or mavlink:ADDRESS?receiver=NAME"
+KINDS = "json:FILE, mcap:FILE, udp:HOST:PORT, http:[HOST:]PORT or mavlink:ADDRESS?receiver=NAME"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -78,11 +78,28 @@ def _recording(text: str, place: str) -> Opener:
 
 
 def _lines_udp(text: str, place: str) -> Opener:
-    host, _, port = place.rpartition(":")
-    host = host.removeprefix("[").removesuffix("]")  # as IPv6 is written before a port
-    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+    host, port = _host_and_port(place)
+    if not host or port is None:
         raise ChromadockError(f"--out {text}: give udp:HOST:PORT, such as udp:192.168.2.1:9000")
-    return lambda _: LinesUdp(host, int(port))
+    return lambda _: LinesUdp(host, port)
+
+
+def _page(text: str, place: str) -> Opener:
+    host, port = _host_and_port(place)
+    if port is None:
+        raise ChromadockError(
+            f"--out {text}: give http:PORT for this computer alone, or http:0.0.0.0:PORT for all "
+            "that can reach it, such as http:8642"
+        )
+
+    def opened(around: Surroundings) -> ResultOutput:
+        from chromadock.output.page.output import PageOutput  # takes long to load
+
+        page = PageOutput(host or "127.0.0.1", port)
+        page.begin(around.setup)
+        return page
+
+    return opened
 
 
 def _mavlink(text: str, place: str) -> Opener:
@@ -102,6 +119,14 @@ def _mavlink(text: str, place: str) -> Opener:
     return opened
 
 
+def _host_and_port(place: str) -> tuple[str, int | None]:
+    """Of ``HOST:PORT`` or ``PORT``, the host (empty without one) and the port (None: no number)."""
+    host, _, port = place.rpartition(":")
+    host = host.removeprefix("[").removesuffix("]")  # as IPv6 is written before a port
+    known = port.isdecimal() and 0 < int(port) < 65536
+    return host, int(port) if known else None
+
+
 def _in_a_folder(text: str, place: str) -> Path:
     path = Path(place)
     if not path.resolve().parent.is_dir():
@@ -113,5 +138,6 @@ _KINDS: dict[str, Callable[[str, str], Opener]] = {
     "json": _lines_file,
     "mcap": _recording,
     "udp": _lines_udp,
+    "http": _page,
     "mavlink": _mavlink,
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from chromadock.back_off import FIRST_RETRY_S, LONGEST_RETRY_S
 from chromadock.errors import ChromadockError
@@ -35,7 +35,7 @@ class Guarded(ResultOutput):
         self._again_s = 0.0
         self._wait_s = FIRST_RETRY_S
         self._lost = 0
-        self._fault = ""
+        self._fault = self._reason = ""
 
     def attitude(self, time_s: float, age_s: float | None) -> Attitude | None:
         """See ``ResultOutput``."""
@@ -63,9 +63,20 @@ class Guarded(ResultOutput):
         self._lost += 1
         self._again_s = now_s + self._wait_s
         self._wait_s = min(2 * self._wait_s, LONGEST_RETRY_S)
+        self._reason = str(error)
         if self._failed_s is None:
             self._failed_s, self._fault = now_s, str(error).split(": ", 1)[0]
             self._tell(f"warning: {error}: the detection goes on, and it is tried again")
+
+    def trouble(self) -> str | None:
+        """What befell the output and is not over, or what it says itself."""
+        if self._failed_s is not None:
+            return f"{self._reason}; {self._lost} results lost"
+        return self._output.trouble()
+
+    def beside(self, outputs: Mapping[str, ResultOutput]) -> None:
+        """See ``ResultOutput``."""
+        self._output.beside(outputs)
 
     def close(self) -> None:
         """Close the output; at the end nothing is tried again."""

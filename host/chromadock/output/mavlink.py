@@ -33,6 +33,10 @@ class MavlinkOutput(ResultOutput):
         """Tell the autopilot."""
         self._autopilot.write(frame.time_s, detection, age_s)
 
+    def trouble(self) -> str | None:
+        """Whether no vehicle is heard."""
+        return None if self._autopilot.heard else "no heartbeat of the vehicle is heard"
+
     def close(self) -> None:
         """End the link."""
         self._autopilot.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import asdict
 from types import TracebackType
 from typing import Any, TypeVar
@@ -47,6 +48,15 @@ class ResultOutput(ABC):
         ChromadockError
             Where it cannot; a later write may go well again.
         """
+
+    def trouble(self) -> str | None:
+        """What keeps the results from their receiver at this moment, for the user; None where
+        all is well.  Called from any thread."""
+        return None
+
+    def beside(self, outputs: Mapping[str, ResultOutput]) -> None:  # noqa: B027 - few care
+        """Told once, before the first result: all outputs of the run by what the user called
+        them, this one too."""
 
     def close(self) -> None:  # noqa: B027 - some outputs hold nothing open
         """Finish and let go of what is open."""

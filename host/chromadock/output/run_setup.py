@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import metadata, resources
 from pathlib import Path
@@ -23,6 +24,12 @@ class RunSetup:
     settings: VehicleFile
     camera: CameraModel | None
 
+    def vehicle(self) -> str:
+        """The vehicle's file as it holds, but for passwords in the camera's address."""
+        from chromadock.vehicle.manual import as_toml
+
+        return as_toml(self._with_camera({}))
+
     def files(self) -> dict[str, bytes]:
         """By name: the vehicle's file as it holds, and those that it names, beside it.
 
@@ -39,17 +46,15 @@ class RunSetup:
         files = {DOCK: _content(keys.dock.file) if keys.dock.file else _shipped_dock()}
         if keys.camera.calibration:
             files[CALIBRATION] = _content(keys.camera.calibration)
-        camera = {
-            "source": without_secrets(keys.camera.source),
-            "calibration": CALIBRATION if CALIBRATION in files else "",
-        }
-        beside = keys.model_copy(
-            update={
-                "camera": keys.camera.model_copy(update=camera),
-                "dock": keys.dock.model_copy(update={"file": DOCK}),
-            }
-        )
+        camera = self._with_camera({"calibration": CALIBRATION if CALIBRATION in files else ""})
+        beside = camera.model_copy(update={"dock": keys.dock.model_copy(update={"file": DOCK})})
         return {VEHICLE: as_toml(beside).encode(), **files}
+
+    def _with_camera(self, update: Mapping[str, str]) -> VehicleFile:
+        """The settings without passwords in the camera's address, and with ``update`` of it."""
+        camera = self.settings.camera
+        public = {"source": without_secrets(camera.source), **update}
+        return self.settings.model_copy(update={"camera": camera.model_copy(update=public)})
 
 
 def chromadock_version() -> str:

@@ -75,7 +75,7 @@ class FolderRecording(Recording):
                     f"{path}: there are files in it: give a new or an empty folder"
                 )
             self._partial.mkdir()
-            _write_camera(self._partial / CAMERA, camera.model)
+            write_camera(self._partial / CAMERA, camera.model)
         except OSError as error:
             self.drop()
             raise cannot_write(path, error) from None
@@ -119,7 +119,7 @@ class VideoRecording(Recording):
         self._video = VideoOutput(path, fps)
         self.finish = _with_picture
         try:
-            _write_camera(self._partial_camera, camera.model)
+            write_camera(self._partial_camera, camera.model)
         except OSError as error:
             self.drop()
             raise cannot_write(path, error) from None
@@ -197,7 +197,7 @@ def _write_truth(truth: Path, made: Made, wanted: Path) -> None:
         raise cannot_write(wanted, error) from None
 
 
-def _write_camera(path: Path, camera: CameraModel) -> None:
+def write_camera(path: Path, camera: CameraModel) -> None:
     """The ``camera_info`` YAML that ``CameraModel.from_yaml`` reads."""
     content = {
         "image_width": camera.width,

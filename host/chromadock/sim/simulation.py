@@ -113,7 +113,7 @@ class Simulation:
             seen = self._dock.picture(time_s, led_share, dock_settings)
             height, width = seen.shape[:2]
             dock.frame(to_rgb565(seen), width, height, "rgb565", round(1000 * time_s))
-            led_share = _led_share(own_duties or dock.duties, led_full)
+            led_share = power_share(own_duties or dock.duties, led_full)
             settings = vehicle_camera.settings(time_s, led_share)
             water = dock.c.background
             yield Step(
@@ -191,7 +191,7 @@ def _own_duties(dock: Any, colour: str | None) -> tuple[int, int, int] | None:
     return duty[0], duty[1], duty[2]
 
 
-def _led_share(duties: tuple[int, int, int], full: int) -> tuple[float, float, float]:
+def power_share(duties: tuple[int, int, int], full: int) -> tuple[float, float, float]:
     """What common-anode LEDs, which are on while their pin is low, give at these duties."""
     red, green, blue = (1 - np.array(duties) / full).tolist()
     return red, green, blue

@@ -121,7 +121,8 @@ class OutputKeys(_Table):
     results: Annotated[list[str], allowed("a list of texts in quotes")] = Field(
         [],
         description="Any number of KIND:PLACE: json:FILE appends to a log, mcap:FILE is what "
-        "record is, udp:HOST:PORT sends datagrams, mavlink:ADDRESS?receiver=NAME tells an "
+        "record is, udp:HOST:PORT sends datagrams, http:PORT serves a page on this computer and "
+        "http:0.0.0.0:PORT to all that can reach it, mavlink:ADDRESS?receiver=NAME tells an "
         "autopilot (docs/autopilot.md).",
     )
     record: Text = Field(

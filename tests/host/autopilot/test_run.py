@@ -2,49 +2,24 @@
 
 from __future__ import annotations
 
-import itertools
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from autopilot_peer import SYSTEM, free_port, udp_peer
 from pymavlink.dialects.v20 import common as mavlink
 from robust_composites import compose
-from web_camera import web_camera
-
-RANGE_M = 2.5
-WATER_BGR = (150, 120, 40)
-
-
-def same() -> np.random.Generator:
-    """What every frame has in common: where the dock stands."""
-    return np.random.default_rng(7)
-
-
-def frames(count: int) -> list[bytes]:
-    """JPEGs of a dock that stands still, each with noise of its own."""
-    found = []
-    for seed in range(count):
-        rng = np.random.default_rng(seed)
-        water = np.full((480, 640, 3), WATER_BGR, np.uint8)
-        scene = compose(water, RANGE_M, same())
-        noisy = scene.frame_bgr + rng.normal(0, 2, scene.frame_bgr.shape)
-        ok, jpeg = cv2.imencode(".jpg", np.clip(noisy, 0, 255).astype(np.uint8))
-        assert ok
-        found.append(jpeg.tobytes())
-    return found
+from web_camera import RANGE_M, WATER_BGR, dock_frames, same, web_camera
 
 
 @pytest.fixture(scope="module")
 def camera() -> Iterator[str]:
-    pictures = itertools.cycle(frames(8))
-    with web_camera(lambda: next(pictures)) as address:
-        yield address
+    with web_camera() as url:
+        yield url
 
 
 def test_a_vehicles_autopilot_is_told_where_the_dock_is(camera: str, tmp_path: Path) -> None:
@@ -80,7 +55,7 @@ def test_a_vehicles_autopilot_is_told_where_the_dock_is(camera: str, tmp_path: P
 
 
 def test_a_dry_run_says_what_the_autopilot_would_understand(tmp_path: Path) -> None:
-    for k, jpeg in enumerate(frames(8)):
+    for k, jpeg in enumerate(dock_frames(8)):
         (tmp_path / f"{k}.jpg").write_bytes(jpeg)
     command = [
         *(sys.executable, "-m", "chromadock", "detect", str(tmp_path), "--fps", "10"),

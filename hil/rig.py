@@ -51,9 +51,14 @@ class Rig:
         self.raw.clear()
 
     def defaults(self) -> None:
-        """Default parameters and automatic colours, from the camera; not in flash."""
+        """Default parameters and automatic colours, from the camera; not in flash.
+
+        The limit and the polarity, which a reset leaves, are those of the golden duties.
+        """
         self.send(handshake(0, 0, 0, 0, 0))
         self.dock.reset()
+        self.dock.set_parameter("LED_LIMIT", 255)
+        self.dock.set_parameter("LED_ANODE", 1)
         self.dock.led_auto()
         if self.wire.baud != 921600:  # or a saved default would lose the board
             self.dock.set_parameter("LINK_BAUD", self.wire.baud)

@@ -102,7 +102,7 @@ def test_a_snapshot_is_what_the_camera_gave(rig: Rig) -> None:
 def test_the_first_colour_is_the_golden_one_of_the_camera_s_picture(rig: Rig) -> None:
     rig.reset()
     status = rig.status(lambda s: s.frames > 0)
-    assert list(status.duty) == golden.FRAMES["pool_qqvga"].duties
+    assert list(status.duty) == [FULL - duty for duty in golden.FRAMES["pool_qqvga"].duties]
 
 
 @pytest.mark.board

@@ -54,12 +54,12 @@ static void run_camera(void *)
         camera_turn();
 }
 
-static void tell_board(bool settings_corrupt)
+static void tell_board(dock_stored_t stored)
 {
     static const char hash[] = GIT_HASH;
     dock_board_t board = {};
     board.reset_reason = static_cast<uint8_t>(esp_reset_reason());
-    board.settings_corrupt = settings_corrupt;
+    board.settings = stored;
     for (size_t i = 0; i < sizeof board.git_hash && hash[i] != '\0'; i++)
         board.git_hash[i] = static_cast<uint8_t>(hash[i]);
     board.buffer = image;
@@ -73,12 +73,12 @@ void setup()
      * have told which way round that is. */
     pwm_release();
     dock_settings_t settings;
-    const storage_result_t stored = storage_load(&settings);
+    const dock_stored_t stored = storage_load(&settings);
     pwm_start(settings.led.common_anode);
     port_start(settings.link_baud);
 
     dock_init(&dock, &settings);
-    tell_board(stored == STORAGE_CORRUPT);
+    tell_board(stored);
 
     /* The camera while memory is in one piece: it needs 32 KB of it at once. */
     camera_order_t order = {};

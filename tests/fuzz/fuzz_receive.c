@@ -124,7 +124,7 @@ static void must_be_sound(void)
 {
     const link_t *link = &dock.link;
     uint16_t duty[3];
-    MUST(dock_settings_are_valid(&dock.settings));
+    MUST(dock_mend_settings(&dock.settings) == 0);
     MUST(dock.led_mode <= DOCK_LED_RAW);
     MUST(dock.led_hue < METHOD_HUE_RANGE);
     MUST(dock.marker_hue < METHOD_HUE_RANGE);
@@ -209,7 +209,7 @@ static void board(void)
         uint8_t blob[SETTINGS_BLOB_BYTES];
         dock_settings_t read;
         settings_to_blob(&dock.settings, blob);
-        MUST(settings_from_blob(&read, blob, sizeof blob));
+        MUST(settings_from_blob(&read, blob, sizeof blob) == SETTINGS_READ);
         dock_saved(&dock, written);
     }
 }

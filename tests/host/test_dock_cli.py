@@ -122,9 +122,19 @@ def test_params_load_sets_all_of_a_file(dock, tmp_path):
 
 
 def test_params_reset_brings_the_defaults_back(dock):
-    dock("params", "set", "LED_LIMIT", 9)
+    dock("params", "set", "WINDOW_MS", 900)
     dock("params", "reset")
-    assert "= 255 " in dock("params", "get", "LED_LIMIT")
+    assert "= 2000 " in dock("params", "get", "WINDOW_MS")
+
+
+def test_params_reset_leaves_brightness_and_polarity_to_the_wiring(dock):
+    dock("params", "set", "LED_LIMIT", 9)
+    dock("params", "set", "LED_ANODE", 1)
+    dock("params", "reset")
+    assert "= 9 " in dock("params", "get", "LED_LIMIT")
+    assert "= low pin lights" in dock("params", "get", "LED_ANODE")
+    dock("params", "set", "LED_LIMIT", 255)
+    dock("params", "set", "LED_ANODE", 0)
 
 
 def test_what_is_saved_outlasts_a_reboot_and_what_is_not_does_not(dock):
@@ -139,12 +149,12 @@ def test_what_is_saved_outlasts_a_reboot_and_what_is_not_does_not(dock):
 
 def test_led_shows_raw_duties_a_hue_or_the_marker(dock, url):
     dock("led", 255, 0, 128)
-    assert list(status_of(url).duty) == [0, 4096, 2040]  # common anode: low lights
+    assert list(status_of(url).duty) == [4096, 0, 2056]
     assert status_of(url).led_mode == dialect.DOCK_LED_RAW
     dock("led", 120)
-    assert list(status_of(url).duty) == [4096, 0, 4096]
+    assert list(status_of(url).duty) == [0, 4096, 0]
     dock("led", "auto")
-    assert list(status_of(url).duty) == [0, 4096, 2026]
+    assert list(status_of(url).duty) == [4096, 0, 2070]
     assert status_of(url).led_mode == dialect.DOCK_LED_AUTO
 
 

@@ -70,7 +70,7 @@ def test_duties_stay_in_range_and_polarity_mirrors_them(
         led = ffi.new("led_settings_t *", (offset, matrix, gamma, limit, common_anode))
         settings = ffi.new("dock_settings_t *", lib.dock_default_settings())
         settings.led = led[0]
-        assert lib.dock_settings_are_valid(settings)
+        assert lib.dock_mend_settings(settings) == 0
         duty = ffi.new("uint16_t[3]")
         lib.led_duties(duty, hue, led)
         duties.append(np.array(list(duty)))

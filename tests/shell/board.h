@@ -20,6 +20,7 @@
 #include <driver/ledc.h>
 #include <driver/uart.h>
 #include <esp_camera.h>
+#include <esp_partition.h>
 #include <esp_system.h>
 #include <esp_task_wdt.h>
 #include <esp_timer.h>
@@ -29,10 +30,15 @@
 #include <nvs.h>
 #include <nvs_flash.h>
 
+#include "../../firmware/esp32cam/core.h"
+
 enum { FOREVER = -1, GRAB_TIMEOUT_MS = 4000 };
 
 /* What esp_restart throws, which does not return. */
 struct Restarted {};
+
+/* What a flash write throws when the power fails in it. */
+struct PowerLost {};
 
 struct FakeSensor {
     sensor_t driver;
@@ -49,6 +55,19 @@ struct FakeSensor {
 struct FakeBuffer {
     camera_fb_t driver;
     bool out;
+};
+
+/* NVS, and the first sector of the partition "spiffs". */
+struct FakeFlash {
+    esp_err_t init_error, open_error, get_error, set_error, commit_error;
+    bool stored; /* NVS has the blob */
+    std::string blob;
+    bool torn; /* power lost in NVS leaves half a blob */
+    int handles_open;
+    bool without_sector; /* another partition table */
+    esp_err_t erase_error, write_error;
+    std::string sector;
+    int power; /* writes until it fails; FOREVER: it does not */
 };
 
 struct FakeBoard {
@@ -71,10 +90,7 @@ struct FakeBoard {
     ledc_channel_config_t channel[LEDC_CHANNEL_MAX];
     uint32_t duty[LEDC_CHANNEL_MAX], new_duty[LEDC_CHANNEL_MAX];
 
-    esp_err_t flash_error, open_error, get_error, set_error, commit_error;
-    bool stored;
-    std::string blob;
-    int handles_open;
+    FakeFlash flash;
 
     uart_config_t uart;
     std::string received, sent;
@@ -204,68 +220,6 @@ esp_err_t ledc_update_duty(ledc_mode_t, ledc_channel_t channel)
 {
     board.duty[channel] = board.new_duty[channel];
     return ESP_OK;
-}
-
-esp_err_t nvs_flash_init(void)
-{
-    note("nvs_flash_init");
-    const esp_err_t error = board.flash_error;
-    board.flash_error = ESP_OK;
-    return error;
-}
-
-esp_err_t nvs_flash_erase(void)
-{
-    note("nvs_flash_erase");
-    board.stored = false;
-    return ESP_OK;
-}
-
-esp_err_t nvs_open(const char *name, nvs_open_mode_t mode, nvs_handle_t *handle)
-{
-    note(std::string("nvs_open ") + name);
-    if (board.open_error != ESP_OK)
-        return board.open_error;
-    if (mode == NVS_READONLY && !board.stored)
-        return ESP_ERR_NVS_NOT_FOUND;
-    ++board.handles_open;
-    *handle = 7;
-    return ESP_OK;
-}
-
-esp_err_t nvs_get_blob(nvs_handle_t, const char *key, void *value,
-                       size_t *length)
-{
-    note(std::string("nvs_get_blob ") + key);
-    if (board.get_error != ESP_OK)
-        return board.get_error;
-    if (*length < board.blob.size())
-        return ESP_ERR_NVS_INVALID_LENGTH;
-    *length = board.blob.size();
-    memcpy(value, board.blob.data(), board.blob.size());
-    return ESP_OK;
-}
-
-esp_err_t nvs_set_blob(nvs_handle_t, const char *key, const void *value,
-                       size_t length)
-{
-    note(std::string("nvs_set_blob ") + key);
-    if (board.set_error != ESP_OK)
-        return board.set_error;
-    board.blob.assign(static_cast<const char *>(value), length);
-    board.stored = true;
-    return ESP_OK;
-}
-
-esp_err_t nvs_commit(nvs_handle_t)
-{
-    note("nvs_commit");
-    return board.commit_error;
-}
-
-void nvs_close(nvs_handle_t)
-{
-    --board.handles_open;
 }
 
 esp_err_t uart_driver_install(uart_port_t, int receive_bytes, int, int,
@@ -447,11 +401,13 @@ extern "C" const char *__asan_default_options()
 }
 
 #include "fake_camera.h"
+#include "fake_flash.h"
 
 /* A board that nobody has touched, with everything in order. */
 inline void board_reset()
 {
     board = FakeBoard();
+    board.flash = blank_flash();
     board.frame_ms = 80;
     board.frame_age_us = 40000;
     board.sensor.settled_exposure = 300;

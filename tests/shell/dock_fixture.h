@@ -7,14 +7,6 @@
 /* DOCK_FAULT_SETTINGS and DOCK_FAULT_STORAGE of shared/chromadock.xml. */
 enum { FAULT_SETTINGS = 4, FAULT_STORAGE = 8 };
 
-inline void store_settings(const dock_settings_t &settings)
-{
-    uint8_t blob[SETTINGS_BLOB_BYTES];
-    settings_to_blob(&settings, blob);
-    board.blob.assign(reinterpret_cast<const char *>(blob), sizeof blob);
-    board.stored = true;
-}
-
 /* Pure green water: the marker is blue. */
 inline void paint_water()
 {
@@ -30,6 +22,7 @@ inline void start_dock()
     camera = Camera();
     colour = Loop(&dock);
     board.while_waiting = loop;
+    init_arduino();
     setup();
 }
 

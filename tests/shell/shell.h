@@ -14,6 +14,8 @@
 #include "../../firmware/esp32cam/port.cpp"
 #include "../../firmware/esp32cam/pwm.cpp"
 #include "../../firmware/esp32cam/sensor_lock.cpp"
+#include "../../firmware/esp32cam/settings_nvs.cpp"
+#include "../../firmware/esp32cam/settings_sector.cpp"
 #include "../../firmware/esp32cam/settling.cpp"
 #include "../../firmware/esp32cam/storage.cpp"
 #include "../../firmware/esp32cam/watchdog.cpp"

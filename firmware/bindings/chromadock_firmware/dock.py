@@ -24,6 +24,13 @@ REQUESTS = {
 }
 
 
+_STORED = {
+    lib.SETTINGS_READ: lib.DOCK_STORED_WHOLE,
+    lib.SETTINGS_MENDED: lib.DOCK_STORED_IN_PART,
+    lib.SETTINGS_REFUSED: lib.DOCK_STORED_LOST,
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Settings:
     """What differs from the firmware's default settings; None leaves the default."""
@@ -57,11 +64,13 @@ class Dock:
     def __init__(self, settings: Settings | None = None, blob: bytes | None = None) -> None:
         """Start it with ``settings``, or with those of a ``blob`` from flash.
 
-        A blob that is not valid leaves ``settings`` and sets ``settings_corrupt``.
+        A blob that is damaged leaves ``settings``; ``stored`` says what became of it.
         """
         self.c: Any = ffi.new("dock_t *")
         c = ffi.new("dock_settings_t *", (settings or Settings()).to_c())
-        self.settings_corrupt = blob is not None and not lib.settings_from_blob(c, blob, len(blob))
+        self.stored = lib.DOCK_STORED_WHOLE
+        if blob is not None:
+            self.stored = _STORED[lib.settings_from_blob(c, blob, len(blob))]
         self._buffer: Any = ffi.NULL
         lib.dock_init(self.c, c)
 
@@ -84,7 +93,7 @@ class Dock:
         self._buffer = ffi.new("uint8_t[]", capacity) if capacity else ffi.NULL
         board = ffi.new("dock_board_t *")
         board.reset_reason = reset_reason
-        board.settings_corrupt = self.settings_corrupt
+        board.settings = self.stored
         board.git_hash = git_hash.ljust(8, b"\0")
         board.buffer = self._buffer
         board.capacity = capacity

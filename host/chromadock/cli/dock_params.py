@@ -101,7 +101,7 @@ def load(
 
 @params.command("reset")
 def reset(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -> None:
-    """Set all parameters to their defaults."""
+    """Set all parameters to their defaults; LED_LIMIT and LED_ANODE stay."""
     with connect(port, timeout, baud) as dock:
         dock.reset()
-    print(f"all parameters at their defaults {_UNSAVED}")
+    print(f"all parameters but LED_LIMIT and LED_ANODE at their defaults {_UNSAVED}")

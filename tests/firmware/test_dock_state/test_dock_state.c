@@ -41,8 +41,7 @@ static void test_the_defaults_are_those_of_the_method(void)
     TEST_ASSERT_EQUAL_UINT8(METHOD_MAPPING_TERNARY, settings.mapping);
     TEST_ASSERT_EQUAL_UINT16(512, settings.fallback_hue);
     TEST_ASSERT_EQUAL_UINT16(2000, settings.window_ms);
-    TEST_ASSERT_TRUE(settings.led.common_anode);
-    TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+    TEST_ASSERT_FALSE(settings.led.common_anode);
 }
 
 static void test_the_ends_of_each_range_are_valid(void)
@@ -51,15 +50,14 @@ static void test_the_ends_of_each_range_are_valid(void)
     settings.mapping = METHOD_MAPPING_COMPLEMENT;
     settings.fallback_hue = 1535;
     settings.window_ms = 100;
-    TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+    TEST_ASSERT_EQUAL_INT(0, dock_mend_settings(&settings));
     settings.fallback_hue = 0;
     settings.window_ms = 2000;
-    TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+    TEST_ASSERT_EQUAL_INT(0, dock_mend_settings(&settings));
 }
 
 static void assert_gives_way_to_the_defaults(dock_settings_t settings)
 {
-    TEST_ASSERT_FALSE(dock_settings_are_valid(&settings));
     dock_init(&first, &settings);
     const dock_settings_t defaults = dock_default_settings();
     TEST_ASSERT_EQUAL_UINT8(defaults.mapping, first.settings.mapping);
@@ -125,7 +123,7 @@ static void test_a_fresh_start_forgets_everything(void)
     dock_init(&first, &settings);
 
     dock_led_duties(&first, duty);
-    TEST_ASSERT_EQUAL_UINT16(4096, duty[0]);
+    TEST_ASSERT_EQUAL_UINT16(0, duty[0]);
     TEST_ASSERT_EQUAL_UINT32(0, first.counters.frames);
     TEST_ASSERT_EQUAL_UINT32(0, first.counters.camera_faults);
     TEST_ASSERT_EQUAL_UINT8(0, first.rolling.count);

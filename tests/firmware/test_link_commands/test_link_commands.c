@@ -157,9 +157,13 @@ static void test_a_save_of_the_boards_own_is_not_acknowledged(void)
 
 static void test_defaults_come_back_on_command(void)
 {
-    const dock_settings_t defaults = dock_default_settings();
+    dock_settings_t defaults = dock_default_settings();
+    defaults.led.limit = 3; /* the wiring's */
+    defaults.led.common_anode = true;
     link_start();
     tell(wire_parameter_set("LED_LIMIT", 3));
+    tell(wire_parameter_set("LED_ANODE", 1));
+    tell(wire_parameter_set("WINDOW_MS", 300));
     tell(wire_parameter_set("LED_MODE", 1));
     tell(wire_parameter_set("CAM_GAIN", 3));
     TEST_ASSERT_EQUAL_INT(DOCK_REQUEST_CAMERA, dock_take_request(&dock));

@@ -171,19 +171,37 @@ static void test_a_lost_camera_is_said_once_and_so_is_its_return(void)
     TEST_ASSERT_EQUAL_UINT16(0, status_now().faults);
 }
 
-static void test_corrupt_settings_are_told_until_they_are_saved(void)
+/* A dock whose board says this of the stored settings; what it heard. */
+static void start_with_settings(dock_stored_t stored)
 {
     link_start();
-    const dock_board_t board = {4, true, "abcdef01", NULL, 0};
+    const dock_board_t board = {4, stored, "abcdef01", NULL, 0};
     const dock_settings_t settings = dock_default_settings();
     dock_init(&dock, &settings);
     dock_set_board(&dock, &board);
     dock.link.sequence = 3; /* go on from link_start's three */
     hear();
+}
+
+static void test_lost_settings_are_told_until_they_are_saved(void)
+{
+    const dock_stored_t lost[] = {DOCK_STORED_LOST, DOCK_STORED_IN_PART};
+    for (size_t i = 0; i < 2; i++) {
+        start_with_settings(lost[i]);
+        TEST_ASSERT_EQUAL_UINT(2, heard_count(MAVLINK_MSG_ID_STATUSTEXT));
+        TEST_ASSERT_TRUE(status_now().faults & DOCK_FAULT_SETTINGS);
+        dock_saved(&dock, true);
+        TEST_ASSERT_FALSE(status_now().faults & DOCK_FAULT_SETTINGS);
+    }
+}
+
+static void test_a_second_copy_in_use_is_told_and_is_no_fault(void)
+{
+    start_with_settings(DOCK_STORED_RESTORED);
     TEST_ASSERT_EQUAL_UINT(2, heard_count(MAVLINK_MSG_ID_STATUSTEXT));
-    TEST_ASSERT_TRUE(status_now().faults & DOCK_FAULT_SETTINGS);
-    dock_saved(&dock, true);
     TEST_ASSERT_FALSE(status_now().faults & DOCK_FAULT_SETTINGS);
+    start_with_settings(DOCK_STORED_WHOLE);
+    TEST_ASSERT_EQUAL_UINT(1, heard_count(MAVLINK_MSG_ID_STATUSTEXT));
 }
 
 /* A frame of each, the camera's at 30 a second as the board delivers them. */
@@ -248,7 +266,8 @@ static void run_tests(void)
     RUN_TEST(test_corrupt_messages_are_counted_in_the_status);
     RUN_TEST(test_a_message_is_answered_within_noise_and_driver_text);
     RUN_TEST(test_a_lost_camera_is_said_once_and_so_is_its_return);
-    RUN_TEST(test_corrupt_settings_are_told_until_they_are_saved);
+    RUN_TEST(test_lost_settings_are_told_until_they_are_saved);
+    RUN_TEST(test_a_second_copy_in_use_is_told_and_is_no_fault);
     RUN_TEST(test_camera_frames_are_passed_over_while_a_host_injects);
     RUN_TEST(test_the_camera_is_back_three_seconds_after_the_last_packet);
     RUN_TEST(test_the_camera_is_back_at_once_when_the_host_says_so);

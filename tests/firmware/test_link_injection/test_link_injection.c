@@ -22,6 +22,7 @@ static void test_injected_golden_frames_give_the_golden_colour(void)
         const frame_t frame = frame_of(golden);
         dock_settings_t settings = dock_default_settings();
         settings.mapping = golden->mapping;
+        settings.led.common_anode = true; /* as golden.py has it */
         if (frame.length > MOST_BYTES)
             continue;
         link_start_with(&settings, (uint32_t)frame.length);

@@ -116,7 +116,7 @@ static void test_the_status_tells_what_the_board_said(void)
     TEST_ASSERT_EQUAL_UINT8(1, status.reset_reason);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, status.background_hue);
     TEST_ASSERT_EQUAL_UINT16(0, status.frame_rate_dhz);
-    TEST_ASSERT_EQUAL_UINT16(4096, status.duty[0]); /* dark, common anode */
+    TEST_ASSERT_EQUAL_UINT16(0, status.duty[0]); /* dark */
     TEST_ASSERT_EQUAL_UINT16(0, status.faults);
 }
 

@@ -160,7 +160,7 @@ static void test_a_save_that_fails_is_reported_and_capture_goes_on(void)
 {
     start_fresh_dock();
     run_to_first_frame();
-    board.set_error = ESP_ERR_NVS_NOT_ENOUGH_SPACE;
+    board.flash.set_error = ESP_ERR_NVS_NOT_ENOUGH_SPACE;
     request(DOCK_REQUEST_SAVE);
     run_for(1000);
     TEST_ASSERT_NOT_EQUAL(0, dock.faults & FAULT_STORAGE);
@@ -182,7 +182,7 @@ static void test_settings_are_saved_without_a_camera(void)
     run_for(100);
 
     dock_settings_t stored;
-    TEST_ASSERT_EQUAL_INT(STORAGE_LOADED, storage_load(&stored));
+    TEST_ASSERT_EQUAL_INT(DOCK_STORED_WHOLE, storage_load(&stored));
     TEST_ASSERT_EQUAL_UINT16(500, stored.window_ms);
 }
 

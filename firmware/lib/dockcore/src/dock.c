@@ -10,11 +10,26 @@
 void dock_init(dock_t *dock, const dock_settings_t *settings)
 {
     memset(dock, 0, sizeof *dock);
-    dock->settings =
-        dock_settings_are_valid(settings) ? *settings : dock_default_settings();
+    dock->settings = *settings;
+    dock_mend_settings(&dock->settings);
     dock->led_mode = dock->settings.led_mode;
     dock->led_hue = dock->settings.led_hue;
     rolling_init(&dock->rolling);
+}
+
+static void tell_settings(dock_t *dock, dock_stored_t stored)
+{
+    if (stored == DOCK_STORED_LOST || stored == DOCK_STORED_IN_PART)
+        dock->faults |= DOCK_FAULT_SETTINGS;
+    if (stored == DOCK_STORED_LOST)
+        link_say_words(dock, MAV_SEVERITY_WARNING,
+                       "stored settings corrupt: defaults in use");
+    else if (stored == DOCK_STORED_IN_PART)
+        link_say_words(dock, MAV_SEVERITY_WARNING,
+                       "a stored setting was out of range: default used");
+    else if (stored == DOCK_STORED_RESTORED)
+        link_say_words(dock, MAV_SEVERITY_NOTICE,
+                       "stored settings damaged: second copy used");
 }
 
 void dock_set_board(dock_t *dock, const dock_board_t *board)
@@ -28,11 +43,7 @@ void dock_set_board(dock_t *dock, const dock_board_t *board)
     line_add(&line, " started, reset reason ");
     line_add_fixed(&line, board->reset_reason, 0);
     link_say(dock, MAV_SEVERITY_INFO, &line);
-    if (board->settings_corrupt) {
-        dock->faults |= DOCK_FAULT_SETTINGS;
-        link_say_words(dock, MAV_SEVERITY_WARNING,
-                       "stored settings corrupt: defaults in use");
-    }
+    tell_settings(dock, board->settings);
 }
 
 void dock_set_camera(dock_t *dock, const dock_camera_t *camera)

@@ -25,13 +25,21 @@ typedef struct {
  */
 #define DOCK_IMAGE_BYTES 38400
 
+/* What became of the settings that flash held. */
+typedef enum {
+    DOCK_STORED_WHOLE,    /* all in use; or none was ever saved */
+    DOCK_STORED_RESTORED, /* one copy was damaged, the other one is in use */
+    DOCK_STORED_IN_PART,  /* a value was out of range: its default is in use */
+    DOCK_STORED_LOST,     /* no copy can be read: the defaults are in use */
+} dock_stored_t;
+
 /* What the board knows of itself, told once after dock_init. */
 typedef struct {
-    uint8_t reset_reason;  /* as the chip counts */
-    bool settings_corrupt; /* what flash held was no valid blob */
-    uint8_t git_hash[8];   /* ASCII, first letters of the commit */
-    uint8_t *buffer;       /* for a snapshot or an injected frame; NULL: none */
-    uint32_t capacity;     /* of it, bytes; even address */
+    uint8_t reset_reason; /* as the chip counts */
+    dock_stored_t settings;
+    uint8_t git_hash[8]; /* ASCII, first letters of the commit */
+    uint8_t *buffer;     /* for a snapshot or an injected frame; NULL: none */
+    uint32_t capacity;   /* of it, bytes; even address */
 } dock_board_t;
 
 /* What the camera is set to now, read back from the sensor. */
@@ -70,8 +78,8 @@ typedef struct {
     link_t link;
 } dock_t;
 
-/* Starts with dark LEDs.  Settings that are not valid give way to the default
- * ones: a dock with a corrupt flash still lights up. */
+/* Starts with dark LEDs.  A setting that is out of its range gives way to its
+ * default. */
 void dock_init(dock_t *dock, const dock_settings_t *settings);
 
 void dock_set_board(dock_t *dock, const dock_board_t *board);

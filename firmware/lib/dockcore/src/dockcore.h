@@ -13,6 +13,7 @@
 #include "parameter_table.h"
 #include "real32.h"
 #include "rolling.h"
+#include "settings_blob.h"
 #include "working_image.h"
 
 #endif

@@ -70,7 +70,7 @@ static uint8_t store(dock_t *dock, const mavlink_command_long_t *command,
         dock->link.saving = true;
         return MAV_RESULT_IN_PROGRESS;
     case 2: /* back to the defaults; not yet in flash */
-        dock->settings = dock_default_settings();
+        dock->settings = dock_reset_settings(&before);
         link_settings_changed(dock, &before);
         link_report_parameters(dock);
         return MAV_RESULT_ACCEPTED;

@@ -27,7 +27,7 @@ const parameter_t PARAMETERS[PARAMETER_COUNT] = {
     {"LED_M_BB", FIELD(led.matrix[8]), -32768, 32767, 4096, 1, 12},
     {"LED_GAMMA", FIELD(led.gamma), 0, 3, 2, 1, 0},
     {"LED_LIMIT", FIELD(led.limit), 0, 255, 255, 1, 0},
-    {"LED_ANODE", FIELD(led.common_anode), 0, 1, 1, 1, 0},
+    {"LED_ANODE", FIELD(led.common_anode), 0, 1, 0, 1, 0},
     {"CAM_LOCK", FIELD(camera.lock), 0, 1, 1, 1, 0},
     {"CAM_EXPOSURE", FIELD(camera.exposure), 0, 1200, 0, 1, 0},
     {"CAM_GAIN", FIELD(camera.gain), -1, 30, -1, 1, 0},

@@ -4,9 +4,6 @@
 
 #include "parameter.h"
 
-/* Changes with the table: a blob of another version is not read. */
-#define PARAMETER_TABLE_VERSION UINT32_C(0x302025fa)
-
 enum {
     PARAMETER_MAPPING,
     PARAMETER_WINDOW_MS,

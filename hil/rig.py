@@ -23,8 +23,8 @@ BAD_TEXT = re.compile(
 )
 REBOOT = dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN
 FULL = 4096
-"""A duty of all of the time; with common anodes it is dark."""
-DARK = [FULL, FULL, FULL]
+"""A duty of all of the time."""
+DARK = [0, 0, 0]
 
 
 class Rig:
@@ -58,7 +58,7 @@ class Rig:
         self.send(handshake(0, 0, 0, 0, 0))
         self.dock.reset()
         self.dock.set_parameter("LED_LIMIT", 255)
-        self.dock.set_parameter("LED_ANODE", 1)
+        self.dock.set_parameter("LED_ANODE", 0)
         self.dock.led_auto()
         if self.wire.baud != 921600:  # or a saved default would lose the board
             self.dock.set_parameter("LINK_BAUD", self.wire.baud)
@@ -147,7 +147,7 @@ class Rig:
         self.send(handshake(0, 0, 0, 0, 0))
         self.dock.led_raw(0, 0, 0)
         anode = self.dock.parameter("LED_ANODE")
-        assert self.dock.status().duty == (DARK if anode else [0, 0, 0])
+        assert self.dock.status().duty == ([FULL] * 3 if anode else DARK)
 
     def close(self) -> None:
         """Listen no more; the wire stays open."""

@@ -47,7 +47,7 @@ def test_a_camera_that_never_comes_leaves_the_leds_dark_and_the_link_alive(
     rig = simulate("--fault", "camera-lost")
     status = rig.status(lambda s: s.faults & dialect.DOCK_FAULT_CAMERA)
     assert status.frames == 0
-    assert list(status.duty) == [0, 0, 0]  # of the default polarity
+    assert list(status.duty) == DARK
     assert rig.wait("HEARTBEAT").system_status == dialect.MAV_STATE_CRITICAL
     assert rig.dock.set_parameter("WINDOW_MS", 500) == 500
     rig.dock.led_hue(0)

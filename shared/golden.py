@@ -21,7 +21,7 @@ NEUTRAL_LED = {
     "matrix": [4096, 0, 0, 0, 4096, 0, 0, 0, 4096],
     "gamma": 2,
     "limit": 255,
-    "common_anode": True,
+    "common_anode": False,
 }
 
 
@@ -224,14 +224,14 @@ def led_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
     crosstalk = [4300, -200, -60, -350, 4500, -500, 0, -900, 5000]
     settings = [
         NEUTRAL_LED,
-        {**NEUTRAL_LED, "common_anode": False},
+        {**NEUTRAL_LED, "common_anode": True},
         {**NEUTRAL_LED, "gamma": 0, "limit": 128},
         {**NEUTRAL_LED, "gamma": 3, "offset": [-40, 25, 60]},
-        {**NEUTRAL_LED, "gamma": 1, "matrix": crosstalk, "common_anode": False},
+        {**NEUTRAL_LED, "gamma": 1, "matrix": crosstalk, "common_anode": True},
         {**NEUTRAL_LED, "offset": [255, -255, 0], "limit": 0},
         {**NEUTRAL_LED, "matrix": [120, 0, 7, 0, 90, 1, 0, 0, 33], "limit": 200},
-        {**NEUTRAL_LED, "matrix": [32767] * 9, "common_anode": False},
-        {**NEUTRAL_LED, "matrix": [-32768] * 9, "common_anode": False},
+        {**NEUTRAL_LED, "matrix": [32767] * 9, "common_anode": True},
+        {**NEUTRAL_LED, "matrix": [-32768] * 9},
     ]
     return [
         {"hue": hue, "led": led, "duties": reference.led_duties(m, t, hue, led)}

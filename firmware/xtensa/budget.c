@@ -28,7 +28,7 @@ static uint32_t fill_window(const golden_frame_t *golden)
     uint32_t now_ms = 0;
     dock_init(&dock, &settings);
     for (uint16_t i = 0; i < METHOD_WINDOW_CAPACITY; i++) {
-        rolling_add(&dock.rolling, i, now_ms, settings.window_ms);
+        rolling_add(&dock.decision.rolling, i, now_ms, settings.window_ms);
         now_ms += FRAME_MS;
     }
     return now_ms;
@@ -41,16 +41,16 @@ static void count_stages(const golden_frame_t *golden)
     const dock_settings_t *settings = &dock.settings;
     uint16_t duties[3];
     const uint32_t start = ticks();
-    working_image_from_frame(&dock.image, &frame);
+    working_image_from_frame(&dock.decision.image, &frame);
     const uint32_t averaged = ticks();
-    working_image_smooth(&dock.image);
+    working_image_smooth(&dock.decision.image);
     const uint32_t smoothed = ticks();
-    background_from_image(&dock.background, &dock.image);
+    background_from_image(&dock.decision.background, &dock.decision.image);
     const uint32_t summed = ticks();
-    const uint16_t hue =
-        marker_hue(&dock.background, settings->mapping, settings->fallback_hue);
+    const uint16_t hue = marker_hue(&dock.decision.background,
+                                    settings->mapping, settings->fallback_hue);
     const uint16_t mean =
-        rolling_add(&dock.rolling, hue, now_ms, settings->window_ms);
+        rolling_add(&dock.decision.rolling, hue, now_ms, settings->window_ms);
     led_duties(duties, mean, &settings->led);
     const uint32_t decided = ticks();
     put_instructions(golden->name, "working_image", start, averaged);
@@ -167,9 +167,9 @@ static bool print_link_stack(void)
                                 {at, (uintptr_t)out, sizeof out, 0}};
     uint32_t of_receive = stack_used(&announce);
     keep_larger(&of_receive, stack_used(&deliver));
-    dock.link.version_due = true;
+    dock.link.reports[REPORT_VERSION].state = REPORT_DUE;
     const uint32_t of_transmit = stack_used(&speak);
-    const bool decided = dock.counters.frames == 1; /* or it measured nothing */
+    const bool decided = dock.decision.frames == 1; /* or it measured nothing */
     const bool receive_fits = put_stack("dock_receive", of_receive);
     return put_stack("dock_transmit", of_transmit) && receive_fits && decided;
 }

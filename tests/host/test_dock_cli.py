@@ -45,6 +45,8 @@ def dock(url, capsys):
     with DockClient(Connection(url)) as client:
         client.led_auto()
         client.reset()
+        client.set_parameter("LED_LIMIT", 255)
+        client.set_parameter("LED_ANODE", 0)
 
 
 def status_of(url):
@@ -133,8 +135,6 @@ def test_params_reset_leaves_brightness_and_polarity_to_the_wiring(dock):
     dock("params", "reset")
     assert "= 9 " in dock("params", "get", "LED_LIMIT")
     assert "= low pin lights" in dock("params", "get", "LED_ANODE")
-    dock("params", "set", "LED_LIMIT", 255)
-    dock("params", "set", "LED_ANODE", 0)
 
 
 def test_what_is_saved_outlasts_a_reboot_and_what_is_not_does_not(dock):

@@ -97,10 +97,10 @@ def test_the_camera_is_locked_after_settling():
 
 def test_its_leds_are_dark_until_the_first_frame_then_show_the_marker():
     bench = Bench()
-    assert bench.dock.duties == (4096, 4096, 4096)  # common anode
+    assert bench.dock.duties == (0, 0, 0)
     bench.run(0.5)
-    assert bench.dock.duties == (0, 4096, 2026)
-    assert list(bench.status().duty) == [0, 4096, 2026]
+    assert bench.dock.duties == (4096, 0, 2070)
+    assert list(bench.status().duty) == [4096, 0, 2070]
 
 
 @pytest.mark.parametrize("fps", [0.1, 1, 30])

@@ -68,15 +68,23 @@ void Loop::camera()
         dock_frame(dock, nullptr, clock_ms());
         watchdog_feed();
     } else if (report.event == CAMERA_PAUSED) {
-        save();
+        paused();
     }
     mailbox_done();
+}
+
+void Loop::paused()
+{
+    if (saving)
+        save();
+    camera_stands = restarting;
 }
 
 void Loop::save()
 {
     dock_saved(dock, storage_save(dock->settings));
-    order.pause = false;
+    saving = false;
+    order.pause = restarting;
     mailbox_order(order);
 }
 
@@ -86,16 +94,16 @@ void Loop::requests()
     case DOCK_REQUEST_NONE:
         return;
     case DOCK_REQUEST_SAVE:
-        order.pause = true;
+        saving = order.pause = true;
         break;
     case DOCK_REQUEST_CAMERA:
         order.settings = dock->settings.camera;
         ++order.serial;
         break;
     case DOCK_REQUEST_REBOOT:
-        restarting = true;
+        restarting = order.pause = true;
         restart_ms = clock_ms();
-        return;
+        break;
     }
     mailbox_order(order);
 }
@@ -122,7 +130,11 @@ void Loop::transmit()
 
 void Loop::restart_when_silent()
 {
-    if (!silent || out_sent < out_length || order.pause || !port_is_idle())
+    if (!silent || out_sent < out_length || saving || !port_is_idle())
+        return;
+    /* The chip resets none of its peripherals: a camera that went on filling
+     * its buffers would write over the loader's memory, and hang it. */
+    if (!camera_stands && clock_ms() - restart_ms < LOOP_PAUSE_MS)
         return;
     /* Dark, not frozen at the last colour, until the next start's decision. */
     pwm_start(dock->settings.led.common_anode);

@@ -37,6 +37,9 @@ enum { FOREVER = -1, GRAB_TIMEOUT_MS = 4000 };
 /* What esp_restart throws, which does not return. */
 struct Restarted {};
 
+/* What it throws where the loader hangs after it. */
+struct Hung {};
+
 /* What a flash write throws when the power fails in it. */
 struct PowerLost {};
 
@@ -156,6 +159,12 @@ inline void assert_in_order(const std::vector<std::string> &lines)
     }
 }
 
+/* The driver is on and has a buffer to fill. */
+inline bool camera_writes_memory()
+{
+    return board.camera_on && !(board.buffers[0].out && board.buffers[1].out);
+}
+
 extern "C" {
 
 int64_t esp_timer_get_time(void)
@@ -163,9 +172,13 @@ int64_t esp_timer_get_time(void)
     return board.us;
 }
 
+/* Resets no peripheral: where the camera's DMA runs it goes on writing, over
+ * the memory of the loader. */
 void esp_restart(void)
 {
     note("esp_restart");
+    if (camera_writes_memory())
+        throw Hung();
     throw Restarted();
 }
 

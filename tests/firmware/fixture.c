@@ -31,8 +31,7 @@ canvas_t canvas_new(frame_format_t format, uint32_t width, uint32_t height)
     const size_t length = (format == FRAME_RGB565 ? 2u : 3u) * width * height;
     TEST_ASSERT_TRUE_MESSAGE(buffer_count < CANVASES, "too many canvases");
     uint8_t *bytes = calloc(length, 1);
-    if (bytes == NULL)
-        TEST_IGNORE_MESSAGE("too little memory for this frame");
+    TEST_ASSERT_NOT_NULL(bytes);
     buffers[buffer_count++] = bytes;
     return (canvas_t){
         {bytes, length, (uint16_t)width, (uint16_t)height, format}, bytes};

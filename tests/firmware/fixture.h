@@ -5,8 +5,7 @@
 #include "dockcore.h"
 
 /* A frame that can be painted.  Its buffer is on the heap and exactly as long
- * as the frame, so that AddressSanitizer sees a read beyond either end.  A test
- * for which a board has too little memory is ignored there. */
+ * as the frame, so that AddressSanitizer sees a read beyond either end. */
 typedef struct {
     frame_t frame;
     uint8_t *bytes; /* frame.bytes, to write */

@@ -10,6 +10,8 @@ camera_report_t Camera::report(camera_event_t event, camera_fb_t *frame) const
     report.camera.exposure = values.exposure;
     report.camera.gain = values.gain;
     report.camera.locked = locked;
+    report.camera.proven = locked && proof == LOCK_PROVEN;
+    report.camera.sensor = sensor != nullptr ? sensor->id.PID : 0;
     return report;
 }
 
@@ -70,6 +72,9 @@ bool Camera::is_stale(const camera_fb_t &frame) const
 void Camera::drop(camera_fb_t *frame)
 {
     const bool stale = is_stale(*frame);
+    const bool counts = !stale && skip == 0;
+    const uint32_t brightness =
+        counts && state == CHECKING ? frame_brightness(*frame) : 0;
     esp_camera_fb_return(frame);
     if (stale)
         return;
@@ -77,6 +82,8 @@ void Camera::drop(camera_fb_t *frame)
         --skip;
     else if (state == SETTLING && settling.frame(clock_ms()))
         run();
+    else if (state == CHECKING)
+        check(brightness);
 }
 
 void Camera::start(const camera_order_t &order)
@@ -87,6 +94,8 @@ void Camera::start(const camera_order_t &order)
         fail();
         return;
     }
+    if (proof == LOCK_REFUTED)
+        proof = LOCK_UNPROVEN;
     if (order.serial != serial)
         adopt(order);
     /* A sensor that starts is automatic: with the values known, and a white
@@ -100,6 +109,7 @@ void Camera::adopt(const camera_order_t &order)
     settings = order.settings;
     serial = order.serial;
     lock_at_known = false;
+    proof = LOCK_UNPROVEN;
 }
 
 void Camera::apply(const camera_order_t &order)
@@ -111,7 +121,7 @@ void Camera::apply(const camera_order_t &order)
         return;
     }
     locked = false;
-    if (sensor_release(sensor) != SENSOR_OK)
+    if (sensor_release(sensor) == SENSOR_FAILED)
         fail();
     else if (state == RUNNING && settings.lock == 0)
         run();
@@ -131,6 +141,11 @@ void Camera::run()
 {
     if (settings.lock != 0) {
         lock();
+        if (locked && proof != LOCK_PROVEN &&
+            values.exposure >= LOCK_CHECK_SHORTEST) {
+            state = CHECKING;
+            lock_check.begin(clock_ms());
+        }
         return;
     }
     state = RUNNING;
@@ -150,7 +165,7 @@ void Camera::lock()
     }
     /* One that reads back something else delivers frames all the same; the
      * dock reports that they are of an unlocked camera. */
-    locked = result == SENSOR_OK;
+    locked = result == SENSOR_OK && proof != LOCK_REFUTED;
     if (locked) {
         lock_at = values;
         lock_at_known = true;
@@ -161,6 +176,27 @@ void Camera::lock()
     skip = CAMERA_FRAMES_AFTER_A_CHANGE;
 }
 
+/* Shortens the exposure and brings it back, and sees whether the picture
+ * follows. */
+void Camera::check(uint32_t brightness)
+{
+    const bool was_half = lock_check.half();
+    lock_check.frame(clock_ms(), brightness);
+    if (lock_check.half() != was_half) {
+        const int exposure = was_half ? lock_at.exposure : lock_at.exposure / 2;
+        if (sensor->set_aec_value(sensor, exposure) != 0) {
+            fail();
+            return;
+        }
+    }
+    if (!lock_check.over())
+        return;
+    proof = lock_check.proof();
+    locked = proof != LOCK_REFUTED;
+    state = RUNNING;
+    skip = was_half ? CAMERA_FRAMES_AFTER_A_CHANGE : 0;
+}
+
 /* Once a second: what does it use now, and has it lost its lock? */
 void Camera::look_after_sensor()
 {
@@ -168,7 +204,7 @@ void Camera::look_after_sensor()
         return;
     read_ms = clock_ms();
     values = sensor_read(sensor);
-    if (settings.lock == 0)
+    if (settings.lock == 0 || !sensor_takes_commands(sensor))
         return;
     if (!locked || values.exposure != lock_at.exposure ||
         values.gain != lock_at.gain || sensor->status.aec != 0 ||

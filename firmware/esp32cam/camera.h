@@ -1,9 +1,9 @@
 /* The camera as the dock wants it: frames of a locked sensor, or a fault; and
  * after a fault it tries again for ever.
  *
- *   without --(back-off over, driver started)--> settling --(lock)--> running
- *      ^                                            |                    |
- *      +----------- no frame, no answer ------------+--------------------+
+ *   without --(back-off over)--> settling --(lock)--> checking --> running
+ *      ^                            |                    |            |
+ *      +---- no frame, no answer ---+--------------------+------------+
  *
  * Its calls block in the driver, up to 4 s for a frame, so it lives in a task
  * of its own and talks with the colour task in orders and reports. */
@@ -15,6 +15,7 @@
 #include "backoff.h"
 #include "camera_power.h"
 #include "core.h"
+#include "lock_check.h"
 #include "sensor_lock.h"
 #include "settling.h"
 
@@ -62,7 +63,7 @@ class Camera
     }
 
   private:
-    enum state_t { WITHOUT, SETTLING, RUNNING };
+    enum state_t { WITHOUT, SETTLING, CHECKING, RUNNING };
 
     void start(const camera_order_t &order);
     void adopt(const camera_order_t &order);
@@ -70,6 +71,7 @@ class Camera
     void settle(bool only_first_frames);
     void run();
     void lock();
+    void check(uint32_t brightness);
     void look_after_sensor();
     void drop(camera_fb_t *frame);
     bool is_stale(const camera_fb_t &frame) const;
@@ -88,6 +90,8 @@ class Camera
     sensor_t *sensor = nullptr;
     sensor_values_t values = {}; /* as last read */
     bool locked = false;
+    LockCheck lock_check;
+    lock_proof_t proof = LOCK_UNPROVEN; /* with these settings */
     sensor_values_t lock_at = {};
     bool lock_at_known = false; /* locked once with these settings */
     int64_t fresh_us = 0;       /* frames that began earlier are stale */

@@ -13,7 +13,8 @@
 #include "storage.h"
 #include "watchdog.h"
 
-/* Arduino's loop() is the colour task; core 0 stays the camera driver's. */
+/* Arduino's loop() is the colour task.  The driver's own task is on core 0; its
+ * interrupts are on the core whose task starts it, which is this one. */
 #if defined(ARDUINO_RUNNING_CORE) && ARDUINO_RUNNING_CORE != 1
 #error "the colour task belongs on core 1"
 #endif

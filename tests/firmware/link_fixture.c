@@ -34,7 +34,7 @@ void link_start_with(const dock_settings_t *settings, uint32_t capacity)
     dock_init(&dock, settings);
     const dock_board_t board = {1, false, "abcdef01", buffer, capacity};
     dock_set_board(&dock, &board);
-    dock_set_camera(&dock, &(dock_camera_t){300, 7, true});
+    dock_set_camera(&dock, &(dock_camera_t){300, 7, true, true, 0x26});
     hear();
 }
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 from simulation import chromadock, running_dock
 
 from chromadock import dialect, method
+from chromadock.cli import dock_status
 from chromadock.link import Connection, DockClient, pictures
 from chromadock.link import discovery as discovery_module
 from chromadock.link.messenger import Messenger
@@ -61,6 +63,23 @@ def test_info_tells_version_method_and_state(dock, url):
     assert method.DIGEST in out
     assert "#29a2ce  195.9°" in out
     assert re.search(r"faults +none", out)
+    assert re.search(r"sensor +OV2640 *\n", out)
+    assert re.search(r"locked +yes, the picture followed", out)
+
+
+@pytest.mark.parametrize(
+    ("number", "says"),
+    [
+        (0x26, "OV2640"),
+        (0x3660, "OV3660, unproven"),
+        (0x5640, "OV5640, unproven"),
+        (0x2145, "GC2145, unfit"),
+        (0x9B, "unknown 0x9b, unproven"),
+        (0, "none"),
+    ],
+)
+def test_a_sensor_is_named_with_what_is_known_of_it(number, says):
+    assert dock_status.sensor(SimpleNamespace(sensor=number)).startswith(says)
 
 
 def test_watch_prints_a_line_a_second_where_stdout_is_no_terminal(dock):

@@ -7,8 +7,10 @@
 
 #include <unity.h>
 
+#include <algorithm>
 #include <deque>
 #include <functional>
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -53,6 +55,8 @@ struct FakeSensor {
     bool deaf;                          /* takes commands, keeps its values */
     std::string broken;                 /* the command that it does not take */
     int changed_gains; /* added to the white balance gains read back */
+    int pid;           /* another sensor than the OV2640; 0: that */
+    bool unmoved;      /* its picture does not follow its exposure */
 };
 
 struct FakeBuffer {

@@ -4,14 +4,10 @@
 
 #include "camera_fixture.h"
 
-
 /* Pure green water: the marker is blue. */
 inline void paint_water()
 {
-    for (size_t i = 0; i < sizeof board.pixels; i += 2) {
-        board.pixels[i] = 0x07;
-        board.pixels[i + 1] = 0xE0;
-    }
+    paint(0, 40, 0);
 }
 
 /* Power on, to the end of setup(), on the board as it has been prepared. */

@@ -8,6 +8,7 @@
 #include "../../firmware/esp32cam/backoff.cpp"
 #include "../../firmware/esp32cam/camera.cpp"
 #include "../../firmware/esp32cam/camera_power.cpp"
+#include "../../firmware/esp32cam/lock_check.cpp"
 #include "../../firmware/esp32cam/loop.cpp"
 #include "../../firmware/esp32cam/mailbox.cpp"
 #include "../../firmware/esp32cam/main.cpp"

@@ -134,7 +134,7 @@ static void test_the_watchdog_watches_the_colour_task_and_resets(void)
 
     TEST_ASSERT_TRUE(board.watchdog_watching);
     TEST_ASSERT_TRUE(board.watchdog_panics);
-    TEST_ASSERT_EQUAL_UINT32(20000, board.watchdog_ms);
+    TEST_ASSERT_EQUAL_UINT32(40000, board.watchdog_ms);
     TEST_ASSERT_EQUAL_INT(0, board.feeds);
 }
 

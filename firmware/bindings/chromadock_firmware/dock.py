@@ -99,9 +99,16 @@ class Dock:
         board.capacity = capacity
         lib.dock_set_board(self.c, board)
 
-    def set_camera(self, exposure: int, gain: int, locked: bool) -> None:
-        """What the sensor is set to: ``exposure`` in lines, ``gain`` in its own units."""
-        lib.dock_set_camera(self.c, ffi.new("dock_camera_t *", (exposure, gain, locked)))
+    def set_camera(
+        self, exposure: int, gain: int, locked: bool, proven: bool = False, sensor: int = 0
+    ) -> None:
+        """What the sensor is set to: ``exposure`` in lines, ``gain`` in its own units.
+
+        ``proven`` says that its picture was seen to follow the lock; ``sensor`` is the product
+        number of its chip, 0 for none.
+        """
+        camera = (exposure, gain, locked, proven, sensor)
+        lib.dock_set_camera(self.c, ffi.new("dock_camera_t *", camera))
 
     def receive(self, data: bytes, now_ms: int) -> None:
         """Bytes from the host, in any pieces, with anything between the messages."""

@@ -22,6 +22,8 @@ SETTLE_S = 0.5
 GRAB_TIMEOUT_S = 4.0
 """The camera driver's own."""
 SETTLED_EXPOSURE, SETTLED_GAIN = 300, 4
+SENSOR = 0x26
+"""An OV2640."""
 _TEXT_PERIOD_S = 0.5
 _NOISE_BYTES = 256
 _CHUNK = 1024
@@ -163,14 +165,15 @@ class SimulatedDock:
     def _unlock(self, now_s: float) -> None:
         self._locked = False
         self._locked_at_s = now_s + SETTLE_S
-        self._core.set_camera(SETTLED_EXPOSURE, SETTLED_GAIN, False)
+        self._core.set_camera(SETTLED_EXPOSURE, SETTLED_GAIN, False, False, SENSOR)
 
     def _lock(self) -> None:
         wanted = self._core.c.settings.camera
         self._locked = True
         exposure = wanted.exposure if wanted.lock and wanted.exposure else SETTLED_EXPOSURE
         gain = wanted.gain if wanted.lock and wanted.gain >= 0 else SETTLED_GAIN
-        self._core.set_camera(exposure, gain, bool(wanted.lock))
+        lock = bool(wanted.lock)
+        self._core.set_camera(exposure, gain, lock, lock, SENSOR)
 
     def _lasts(self, kind: str, now_s: float) -> bool:
         return any(f.kind == kind and now_s - self._start_s >= f.at_s for f in self._lasting)

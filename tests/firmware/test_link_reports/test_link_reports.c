@@ -113,6 +113,8 @@ static void test_the_status_tells_what_the_board_said(void)
     TEST_ASSERT_EQUAL_UINT32(123456, status.time_boot_ms);
     TEST_ASSERT_EQUAL_UINT16(300, status.exposure);
     TEST_ASSERT_EQUAL_UINT8(7, status.gain);
+    TEST_ASSERT_EQUAL_HEX16(0x26, status.sensor);
+    TEST_ASSERT_EQUAL_UINT8(DOCK_LOCK_PROVEN, status.lock);
     TEST_ASSERT_EQUAL_UINT8(1, status.reset_reason);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, status.background_hue);
     TEST_ASSERT_EQUAL_UINT16(0, status.frame_rate_dhz);
@@ -123,7 +125,7 @@ static void test_the_status_tells_what_the_board_said(void)
 static void test_an_unlocked_camera_is_a_fault_unless_it_is_asked_for(void)
 {
     link_start();
-    dock_set_camera(&dock, &(dock_camera_t){0, 0, false});
+    dock_set_camera(&dock, &(dock_camera_t){0, 0, false, false, 0});
     TEST_ASSERT_EQUAL_UINT16(DOCK_FAULT_UNLOCKED, status_now().faults);
     tell(wire_parameter_set("CAM_LOCK", 0));
     TEST_ASSERT_EQUAL_UINT16(0, status_now().faults);

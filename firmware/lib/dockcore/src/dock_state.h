@@ -32,7 +32,9 @@ typedef struct {
 typedef struct {
     uint16_t exposure;
     uint8_t gain;
-    bool locked;
+    bool locked;     /* it reads back the values that were set */
+    bool proven;     /* and its picture was seen to follow them */
+    uint16_t sensor; /* product number of its chip; 0: none */
 } dock_camera_t;
 
 typedef struct {

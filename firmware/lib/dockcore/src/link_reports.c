@@ -82,6 +82,10 @@ static void fill_status(const dock_t *dock, uint32_t now_ms,
     status->confidence = b->confidence;
     status->led_mode = dock->lamps.mode;
     status->reset_reason = dock->board.reset_reason;
+    status->sensor = dock->camera.sensor;
+    status->lock = dock->camera.proven   ? DOCK_LOCK_PROVEN
+                   : dock->camera.locked ? DOCK_LOCK_READ_BACK
+                                         : DOCK_LOCK_NONE;
 }
 
 static bool send_status(dock_t *dock, sender_t *sender, uint32_t now_ms)

@@ -191,7 +191,7 @@ def c_vectors(banner: str, vectors: dict[str, Any], pixels_digest: str) -> str:
         led = v["led"]
         parts.append(
             f"    {{{v['hue']}, {{{braces(led['offset'])}, {braces(led['matrix'])},"
-            f" {led['gamma']}, {led['limit']}, {str(led['common_anode']).lower()}}},"
+            f" {led['gamma']}, {led['limit']}, {str(led['common_anode']).lower()}, 255}},"
             f" {braces(v['duties'])}}},"
         )
     parts += ["};", f"const size_t golden_led_count = {len(vectors['led'])};", ""]

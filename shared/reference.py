@@ -236,6 +236,13 @@ def rolling_capacity(m: Method) -> int:
     return r["max_window_ms"] * r["max_rate_hz"] // 1000
 
 
+def dimmed_limit(limit: int, dark_limit: int, value: int) -> int:
+    """Brightness limit for water of this HSV value, 0..255: ``dark_limit`` where it is black."""
+    if dark_limit >= limit:
+        return limit
+    return dark_limit + ((limit - dark_limit) * value + 127) // 255
+
+
 def led_duties(m: Method, t: Tables, hue: int, led: dict[str, Any]) -> list[int]:
     """PWM duties of a pure colour: offset, gamma, 3x3 matrix, limit, polarity."""
     unit, top = m["led"]["matrix_unit"], 1 << m["led"]["pwm_bits"]

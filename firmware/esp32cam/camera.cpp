@@ -1,6 +1,7 @@
 #include "camera.h"
 
 #include "clock.h"
+#include "rest.h"
 
 camera_report_t Camera::report(camera_event_t event, camera_fb_t *frame) const
 {
@@ -30,6 +31,11 @@ camera_report_t Camera::step(const camera_order_t &order)
         pause();
         return report(CAMERA_PAUSED, nullptr);
     }
+    if (may_rest(order)) {
+        rest();
+        return report(CAMERA_NOTHING, nullptr);
+    }
+    wake();
     resume();
     if (state == WITHOUT) {
         if (backoff.due(clock_ms()))
@@ -47,6 +53,7 @@ camera_report_t Camera::step(const camera_order_t &order)
         fail();
     } else if (state == RUNNING && skip == 0 && !is_stale(*frame)) {
         backoff.succeed();
+        delivered_ms = clock_ms();
         return report(CAMERA_FRAME, frame);
     } else {
         drop(frame);
@@ -239,9 +246,50 @@ void Camera::give_back()
         esp_camera_fb_return(held[--held_count]);
 }
 
+/* Only from one frame of a locked sensor to the next: automatic loops need
+ * frames, and so does everything before the lock. */
+bool Camera::may_rest(const camera_order_t &order) const
+{
+    return state == RUNNING && locked && order.serial == serial &&
+           order.rest_ms > 0 && skip == 0 && sensor_can_rest(sensor) &&
+           clock_ms() - delivered_ms < order.rest_ms;
+}
+
+void Camera::rest()
+{
+    if (resting)
+        return;
+    pause();
+    if (state == WITHOUT)
+        return;
+    if (!sensor_rest(sensor, true)) {
+        fail();
+        return;
+    }
+    processor_rest(true);
+    resting = true;
+}
+
+void Camera::wake()
+{
+    if (!resting)
+        return;
+    resting = false;
+    processor_rest(false);
+    if (!sensor_rest(sensor, false)) {
+        fail();
+        return;
+    }
+    skip = CAMERA_FRAMES_AFTER_A_CHANGE;
+    read_ms = clock_ms() - CAMERA_READ_MS; /* is it still locked? */
+}
+
 void Camera::fail()
 {
     give_back();
+    if (resting)
+        processor_rest(false);
+    resting = false;
     camera_power_down();
     sensor = nullptr;
     locked = false;

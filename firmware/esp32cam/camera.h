@@ -5,6 +5,9 @@
  *      ^                            |                    |            |
  *      +---- no frame, no answer ---+--------------------+------------+
  *
+ * While it is running and locked it may rest from one frame to the next, the
+ * driver between frames and the sensor in standby.
+ *
  * Its calls block in the driver, up to 4 s for a frame, so it lives in a task
  * of its own and talks with the colour task in orders and reports. */
 #ifndef CAMERA_H
@@ -31,8 +34,9 @@ enum {
 
 struct camera_order_t {
     camera_settings_t settings;
-    uint32_t serial; /* another number: apply the settings afresh */
-    bool pause;      /* capture nothing */
+    uint32_t serial;  /* another number: apply the settings afresh */
+    bool pause;       /* capture nothing */
+    uint32_t rest_ms; /* from a frame to the next, at least; 0: all frames */
 };
 
 enum camera_event_t {
@@ -78,6 +82,9 @@ class Camera
     void pause();
     void resume();
     void give_back();
+    bool may_rest(const camera_order_t &order) const;
+    void rest();
+    void wake();
     void fail();
     camera_report_t report(camera_event_t event, camera_fb_t *frame) const;
     camera_report_t report_no_camera();
@@ -99,6 +106,8 @@ class Camera
     uint32_t read_ms = 0;
     uint32_t fault_ms = 0;
     bool fault_due = false;
+    bool resting = false;
+    uint32_t delivered_ms = 0;
     camera_fb_t *held[CAMERA_BUFFERS] = {};
     unsigned held_count = 0;
 };

@@ -90,6 +90,11 @@ void Loop::save()
 
 void Loop::requests()
 {
+    const uint32_t rest_ms = dock_rest_ms(dock);
+    if (rest_ms != order.rest_ms) {
+        order.rest_ms = rest_ms;
+        mailbox_order(order);
+    }
     switch (dock_take_request(dock)) {
     case DOCK_REQUEST_NONE:
         return;

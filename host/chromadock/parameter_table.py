@@ -42,5 +42,7 @@ PARAMETERS = (
     Parameter('CAM_GAIN', -1.0, 30.0, -1.0, '', (), 'Gain to lock at, sensor units; -1: what the camera settled on.'),
     Parameter('CAM_WB', 0.0, 4.0, 1.0, '', ('as settled', 'sunny', 'cloudy', 'office', 'home'), 'White balance gains to lock at. A fixed preset is the same after every start.'),
     Parameter('REPORT_HZ', 0.0, 30.0, 5.0, 'Hz', (), 'DOCK_STATUS messages a second; 0: none.'),
+    Parameter('LED_LIMIT_DARK', 0.0, 255.0, 255.0, '', (), 'Brightness where the water is black; from there to LED_LIMIT in bright water. No less than LED_LIMIT: not dimmed.'),
+    Parameter('DECISION_MS', 0.0, 10000.0, 0.0, 'ms', (), 'From one decision to the next, while sensor and processor rest; 0: every frame.'),
     Parameter('LINK_BAUD', 9600.0, 921600.0, 921600.0, 'Bd', (), 'Speed of the serial port, from the next start on.'),
 )

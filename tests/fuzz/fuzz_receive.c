@@ -407,9 +407,8 @@ static void step(void)
         board();
         break;
     case 6:
-        dock_set_camera(&dock,
-                        &(dock_camera_t){take16(), take8(), take8() % 2,
-                                         take8() % 2, take16()});
+        dock_set_camera(&dock, &(dock_camera_t){take16(), take8(), take8() % 2,
+                                                take8() % 2, take16()});
         break;
     default:
         flush();

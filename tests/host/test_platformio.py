@@ -105,7 +105,8 @@ def without_pip(tmp_path):
 
     def run(path: str) -> subprocess.CompletedProcess[str]:
         # SCons puts a script's code into its own namespace, without running its file.
-        code = f"exec(compile(open({str(ROOT / 'tools' / 'pio_mavlink.py')!r}).read(), 's', 'exec'))"
+        script = str(ROOT / "tools" / "pio_mavlink.py")
+        code = f"exec(compile(open({script!r}).read(), 'script', 'exec'))"
         environment = {**os.environ, "PATH": path, "PYTHONPATH": str(tmp_path)}
         command = [str(python), "-c", code, str(project)]
         return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)

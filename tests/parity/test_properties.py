@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import reference
 from comparison import of_hue
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -77,6 +78,14 @@ def test_duties_stay_in_range_and_polarity_mirrors_them(
     assert (duties[0] <= lib.LED_FULL).all()
     assert (duties[0] + duties[1] == lib.LED_FULL).all()
     assert (duties[0] <= np.ceil(lib.LED_FULL * limit / 255)).all()
+
+
+@given(st.integers(0, 255), st.integers(0, 255), st.integers(0, 255))
+def test_the_limit_in_water_of_any_value(limit: int, dark: int, value: int) -> None:
+    led = ffi.new("led_settings_t *", {"limit": limit, "dark_limit": dark})
+    dimmed = lib.led_dimmed(led, value).limit
+    assert dimmed == reference.dimmed_limit(limit, dark, value)
+    assert min(limit, dark) <= dimmed <= limit
 
 
 @given(HUE, st.integers(0, 255), st.integers(0, 255))

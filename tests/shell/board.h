@@ -57,6 +57,7 @@ struct FakeSensor {
     int changed_gains; /* added to the white balance gains read back */
     int pid;           /* another sensor than the OV2640; 0: that */
     bool unmoved;      /* its picture does not follow its exposure */
+    bool standby;      /* it gives no frames */
 };
 
 struct FakeBuffer {
@@ -107,6 +108,8 @@ struct FakeBoard {
     uint32_t watchdog_ms;
     bool watchdog_panics, watchdog_watching, watchdog_started;
     int feeds;
+
+    uint32_t cpu_mhz;
 
     std::function<void()> while_waiting;
     TaskFunction_t task;
@@ -170,6 +173,15 @@ inline bool camera_writes_memory()
 }
 
 extern "C" {
+
+bool setCpuFrequencyMhz(uint32_t mhz)
+{
+    TEST_ASSERT_GREATER_OR_EQUAL_MESSAGE(80, mhz, "the LEDs' clock");
+    TEST_ASSERT_FALSE_MESSAGE(camera_writes_memory(), "while it captures");
+    note("cpu", mhz);
+    board.cpu_mhz = mhz;
+    return true;
+}
 
 int64_t esp_timer_get_time(void)
 {
@@ -429,6 +441,7 @@ inline void board_reset()
     board.frame_age_us = 40000;
     board.sensor.settled_exposure = 300;
     board.sensor.settled_gain = 5;
+    board.cpu_mhz = 240;
     board.fifo = 128;
     board.wire_idle = true;
     board.watchdog_started = true;

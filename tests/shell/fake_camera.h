@@ -108,6 +108,15 @@ inline int fake_get_reg(sensor_t *, int reg, int mask)
     return (gain + board.sensor.changed_gains) & mask;
 }
 
+inline int fake_set_reg(sensor_t *, int reg, int mask, int value)
+{
+    const bool narrow = board.sensor.pid == 0;
+    TEST_ASSERT_EQUAL_HEX(narrow ? 0x109 : 0x3008, reg);
+    TEST_ASSERT_EQUAL_HEX(narrow ? 0x10 : 0x40, mask);
+    board.sensor.standby = value != 0;
+    return sensor_takes("standby", board.sensor.standby);
+}
+
 /* What power and reset leave it with. */
 inline void sensor_power_on()
 {
@@ -129,6 +138,8 @@ inline void sensor_power_on()
     fake.driver.set_aec_value = fake_set_aec_value;
     fake.driver.set_wb_mode = fake_set_wb_mode;
     fake.driver.get_reg = fake_get_reg;
+    fake.driver.set_reg = fake_set_reg;
+    fake.standby = false;
 }
 
 extern "C" {
@@ -188,7 +199,7 @@ inline uint8_t *exposed_pixels()
 camera_fb_t *esp_camera_fb_get(void)
 {
     TEST_ASSERT_TRUE_MESSAGE(board.camera_on, "no driver");
-    if (board.grabs_to_fail != 0) {
+    if (board.grabs_to_fail != 0 || board.sensor.standby) {
         if (board.grabs_to_fail > 0)
             --board.grabs_to_fail;
         pass_ms(GRAB_TIMEOUT_MS);

@@ -182,7 +182,8 @@ inline void store_in_both(const std::string &blob)
     const uint32_t length = static_cast<uint32_t>(blob.size());
     board.flash.sector =
         "DOCK" + std::string(reinterpret_cast<const char *>(&length), 4) + blob;
-    board.flash.sector.resize(SECTOR_BYTES, '\xFF');
+    board.flash.sector +=
+        std::string(SECTOR_BYTES - board.flash.sector.size(), '\xFF');
 }
 
 #endif

@@ -14,6 +14,7 @@
 #include "../../firmware/esp32cam/main.cpp"
 #include "../../firmware/esp32cam/port.cpp"
 #include "../../firmware/esp32cam/pwm.cpp"
+#include "../../firmware/esp32cam/rest.cpp"
 #include "../../firmware/esp32cam/sensor_lock.cpp"
 #include "../../firmware/esp32cam/settings_nvs.cpp"
 #include "../../firmware/esp32cam/settings_sector.cpp"

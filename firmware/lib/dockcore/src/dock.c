@@ -88,6 +88,12 @@ dock_request_t dock_take_request(dock_t *dock)
     return requests_take(&dock->requests, link_has_answered(&dock->link));
 }
 
+uint32_t dock_rest_ms(const dock_t *dock)
+{
+    const bool wanted = dock->link.snapshot.state == SNAPSHOT_WANTED;
+    return dock->decision.decided && !wanted ? dock->settings.decision_ms : 0;
+}
+
 void dock_saved(dock_t *dock, bool written)
 {
     if (written)

@@ -37,6 +37,10 @@ size_t dock_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
 /* The next thing that the board should do, each told once. */
 dock_request_t dock_take_request(dock_t *dock);
 
+/* How long the camera may rest between two frames, milliseconds: decision_ms,
+ * but not before the first decision, nor while a host waits for a snapshot. */
+uint32_t dock_rest_ms(const dock_t *dock);
+
 /* Whether the board could write the settings that it was asked to. */
 void dock_saved(dock_t *dock, bool written);
 

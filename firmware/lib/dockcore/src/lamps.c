@@ -40,6 +40,13 @@ void lamps_show_raw(lamps_t *lamps, const uint8_t rgb[3])
     memcpy(lamps->raw, rgb, sizeof lamps->raw);
 }
 
+static void show_marker(const decision_t *decision, const led_settings_t *led,
+                        uint16_t duty[3])
+{
+    const led_settings_t dimmed = led_dimmed(led, decision->background.value);
+    led_duties(duty, decision->marker_hue, &dimmed);
+}
+
 void lamps_duties(const lamps_t *lamps, const decision_t *decision,
                   const led_settings_t *led, uint16_t duty[3])
 {
@@ -48,7 +55,7 @@ void lamps_duties(const lamps_t *lamps, const decision_t *decision,
     else if (lamps->mode == DOCK_LED_HUE)
         led_duties(duty, lamps->hue, led);
     else if (decision->decided)
-        led_duties(duty, decision->marker_hue, led);
+        show_marker(decision, led, duty);
     else
         led_dark(duty, led);
 }

@@ -33,5 +33,7 @@ const parameter_t PARAMETERS[PARAMETER_COUNT] = {
     {"CAM_GAIN", FIELD(camera.gain), -1, 30, -1, 1, 0},
     {"CAM_WB", FIELD(camera.white_balance), 0, 4, 1, 1, 0},
     {"REPORT_HZ", FIELD(report_hz), 0, 30, 5, 1, 0},
+    {"LED_LIMIT_DARK", FIELD(led.dark_limit), 0, 255, 255, 1, 0},
+    {"DECISION_MS", FIELD(decision_ms), 0, 10000, 0, 1, 0},
     {"LINK_BAUD", FIELD(link_baud), 9600, 921600, 921600, 1, 0},
 };

@@ -23,7 +23,8 @@ typedef struct {
     led_settings_t led;
     camera_settings_t camera;
     uint8_t report_hz;
-    uint32_t link_baud; /* from the next start on */
+    uint16_t decision_ms; /* at least, from one to the next; 0: every frame */
+    uint32_t link_baud;   /* from the next start on */
 } dock_settings_t;
 
 dock_settings_t dock_default_settings(void);

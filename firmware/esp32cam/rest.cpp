@@ -25,8 +25,8 @@ bool sensor_rest(sensor_t *sensor, bool rest)
 {
     const bool narrow = sensor->id.PID == OV2640_PID;
     const int reg = narrow ? NARROW_CONTROL : WIDE_CONTROL_0;
-    const int bit = narrow ? NARROW_STANDBY : WIDE_STANDBY;
-    return sensor->set_reg(sensor, reg, bit, rest ? bit : 0) >= 0;
+    const int mask = narrow ? NARROW_STANDBY : WIDE_STANDBY;
+    return sensor->set_reg(sensor, reg, mask, rest ? mask : 0) >= 0;
 }
 
 void processor_rest(bool rest)

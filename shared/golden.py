@@ -75,6 +75,11 @@ def equal_bins(u: float, v: float) -> tuple[float, float, float]:
     return (10, 60, 150) if u < 0.5 else (150, 215, 230)
 
 
+def two_waters(u: float, v: float) -> tuple[float, float, float]:
+    """Two bins of nearly the same size, and hues that take the core the longest."""
+    return (60, 80, 40) if u < 0.49 else (120, 160, 80)
+
+
 def every_hue(u: float, v: float) -> tuple[float, float, float]:
     """All hues across, all saturations down."""
     return reference.rgb_from_hsv(int(u * 1536), int(v * 255), 180)
@@ -126,6 +131,7 @@ def frames() -> list[tuple[str, str, int, int, str, bytes]]:
         ("pool_contrast", RGB565, 160, 120, "contrast", pool, 12),
         ("brown_contrast", RGB888, 80, 60, "contrast", brown, 12),
         ("lamps_glow", RGB888, 80, 60, "ternary", lamps_glow, 12),
+        ("two_waters_qqvga", RGB565, 160, 120, "ternary", two_waters, 0),
         ("night_contrast", RGB888, 1, 1, "contrast", flat(2, 4, 9), 0),
     ]
     return [

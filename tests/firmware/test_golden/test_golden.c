@@ -8,7 +8,7 @@
 
 static const golden_frame_t *golden;
 static size_t sequence_at;
-static working_image_t image;
+static whole_image_t image;
 static background_t background;
 
 /* `at` points to the bytes R G B of a whole image in golden_pixels. */
@@ -76,14 +76,16 @@ static void a_frame_gives_its_golden_values(void)
                            golden->format};
     TEST_ASSERT_TRUE_MESSAGE(frame_is_valid(&frame), "frame is refused");
 
-    working_image_from_frame(&image, &frame);
+    whole_image_working(&image, &frame);
     assert_stage("working image", golden->working_at);
 
-    working_image_smooth(&image);
+    whole_image_smoothed(&image, &frame);
     assert_stage("smoothed image", golden->smoothed_at);
 
-    background_from_image(&background, &image);
-    assert_background(&golden->background);
+    for (uint8_t bin = 0; bin < METHOD_GREY_BINS; bin++) {
+        whole_image_background(&background, &image, bin);
+        assert_background(&golden->background);
+    }
     assert_background_rgb(golden->background_rgb);
 
     const uint16_t hue =

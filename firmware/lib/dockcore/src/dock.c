@@ -71,9 +71,9 @@ bool dock_decide(dock_t *dock, const frame_t *frame, uint32_t now_ms)
     dock->faults &= (uint16_t)~DOCK_FAULT_FRAME;
     measure_rate(dock, now_ms);
     count(&dock->counters.frames);
-    working_image_from_frame(&dock->image, frame);
-    working_image_smooth(&dock->image);
-    background_from_image(&dock->background, &dock->image);
+    smoothed_open(&dock->smoothed, frame);
+    background_from_rows(&dock->background, smoothed_rows, &dock->smoothed,
+                         dock->background.bin);
     dock->decided_hue = marker_hue(&dock->background, dock->settings.mapping,
                                    dock->settings.fallback_hue);
     dock->marker_hue = rolling_add(&dock->rolling, dock->decided_hue, now_ms,

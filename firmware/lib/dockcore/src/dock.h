@@ -54,7 +54,7 @@ typedef struct {
     dock_board_t board;
     dock_camera_t camera;
     dock_counters_t counters;
-    working_image_t image; /* smoothed, of the last good frame */
+    smoothed_t smoothed; /* only while a frame is decided on */
     background_t background;
     rolling_t rolling;
     uint16_t decided_hue; /* of the last good frame */

@@ -11,8 +11,10 @@
 #include "marker.h"
 #include "method.h"
 #include "parameter_table.h"
+#include "pixel.h"
 #include "real32.h"
 #include "rolling.h"
+#include "smooth.h"
 #include "working_image.h"
 
 #endif

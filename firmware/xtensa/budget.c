@@ -29,7 +29,7 @@ static uint32_t fill_window(const golden_frame_t *golden)
     uint32_t now_ms = 0;
     dock_init(&dock, &settings);
     for (uint16_t i = 0; i < METHOD_WINDOW_CAPACITY; i++) {
-        rolling_add(&dock.rolling, i, now_ms, settings.window_ms);
+        rolling_add(&dock.decision.rolling, i, now_ms, settings.window_ms);
         now_ms += FRAME_MS;
     }
     return now_ms;
@@ -42,7 +42,7 @@ static void count_frame(const golden_frame_t *golden, const char *kind,
     const frame_t frame = golden_frame(golden);
     const uint32_t now_ms = fill_window(golden);
     uint16_t duties[3];
-    dock.background.bin = bin;
+    dock.decision.background.bin = bin;
     const uint32_t start = ticks();
     dock_frame(&dock, &frame, now_ms);
     dock_led_duties(&dock, duties);
@@ -67,16 +67,16 @@ static void count_stages(const golden_frame_t *golden)
     for (uint32_t y = 0; y < WORKING_HEIGHT; y++)
         qqvga_row(&frame, y, row);
     const uint32_t averaged = ticks();
-    smoothed_open(&dock.smoothed, &frame);
-    smoothed_rows(&dock.smoothed, take_nothing, NULL);
+    smoothed_open(&dock.decision.smoothed, &frame);
+    smoothed_rows(&dock.decision.smoothed, take_nothing, NULL);
     const uint32_t smoothed = ticks();
-    background_from_rows(&background, smoothed_rows, &dock.smoothed,
+    background_from_rows(&background, smoothed_rows, &dock.decision.smoothed,
                          golden->background.bin);
     const uint32_t summed = ticks();
     const uint16_t hue =
         marker_hue(&background, settings->mapping, settings->fallback_hue);
     const uint16_t mean =
-        rolling_add(&dock.rolling, hue, now_ms, settings->window_ms);
+        rolling_add(&dock.decision.rolling, hue, now_ms, settings->window_ms);
     led_duties(duties, mean, &settings->led);
     const uint32_t decided = ticks();
     /* Each stage draws its rows from the one before. */
@@ -199,9 +199,9 @@ static bool print_link_stack(void)
                                 {at, (uintptr_t)out, sizeof out, 0}};
     uint32_t of_receive = stack_used(&announce);
     keep_larger(&of_receive, stack_used(&deliver));
-    dock.link.version_due = true;
+    dock.link.reports[REPORT_VERSION].state = REPORT_DUE;
     const uint32_t of_transmit = stack_used(&speak);
-    const bool decided = dock.counters.frames == 1; /* or it measured nothing */
+    const bool decided = dock.decision.frames == 1; /* or it measured nothing */
     const bool receive_fits = put_stack("dock_receive", of_receive);
     return put_stack("dock_transmit", of_transmit) && receive_fits && decided;
 }

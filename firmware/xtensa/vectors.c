@@ -128,13 +128,14 @@ static void check_dock(const golden_frame_t *golden)
     dock_init(&dock, &settings);
     dock_frame(&dock, &frame, 0);
     dock_led_duties(&dock, duties);
-    check_background(&golden->background, &dock.background);
-    check_value("decided_hue", 0, golden->marker_hue, dock.decided_hue);
-    check_value("marker_hue", 0, golden->marker_hue, dock.marker_hue);
-    check_value("decided", 0, true, dock.decided);
-    check_value("frames", 0, 1, dock.counters.frames);
-    check_value("camera_faults", 0, 0, dock.counters.camera_faults);
-    check_value("frame_faults", 0, 0, dock.counters.frame_faults);
+    check_background(&golden->background, &dock.decision.background);
+    check_value("decided_hue", 0, golden->marker_hue,
+                dock.decision.decided_hue);
+    check_value("marker_hue", 0, golden->marker_hue, dock.decision.marker_hue);
+    check_value("decided", 0, true, dock.decision.decided);
+    check_value("frames", 0, 1, dock.decision.frames);
+    check_value("camera_faults", 0, 0, dock.camera_faults);
+    check_value("frame_faults", 0, 0, dock.decision.frame_faults);
     check_duties(golden->duties, duties);
     check_end();
 }

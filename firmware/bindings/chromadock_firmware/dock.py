@@ -128,9 +128,9 @@ class Dock:
     @property
     def marker_hue(self) -> int:
         """Hue 0..1535 that the LEDs show: the rolling mean."""
-        return int(self.c.marker_hue)
+        return int(self.c.decision.marker_hue)
 
     @property
     def frame_faults(self) -> int:
         """Frames refused for their length, size or format."""
-        return int(self.c.counters.frame_faults)
+        return int(self.c.decision.frame_faults)

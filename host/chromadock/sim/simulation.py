@@ -115,7 +115,7 @@ class Simulation:
             dock.frame(to_rgb565(seen), width, height, "rgb565", round(1000 * time_s))
             led_share = _led_share(own_duties or dock.duties, led_full)
             settings = vehicle_camera.settings(time_s, led_share)
-            water = dock.c.background
+            water = dock.c.decision.background
             yield Step(
                 index=index,
                 time_s=time_s,

@@ -49,9 +49,9 @@ static void assert_duties(int red, int green, int blue)
 static void assert_counters(uint32_t frames, uint32_t camera_faults,
                             uint32_t frame_faults)
 {
-    TEST_ASSERT_EQUAL_UINT32(frames, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT32(camera_faults, dock.counters.camera_faults);
-    TEST_ASSERT_EQUAL_UINT32(frame_faults, dock.counters.frame_faults);
+    TEST_ASSERT_EQUAL_UINT32(frames, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT32(camera_faults, dock.camera_faults);
+    TEST_ASSERT_EQUAL_UINT32(frame_faults, dock.decision.frame_faults);
 }
 
 static void test_the_leds_are_dark_until_the_first_frame(void)
@@ -90,8 +90,8 @@ static void test_the_leds_follow_at_the_next_frame(void)
     start();
     show(blue_water, 0);
     show(green_water, 33); /* markers red and blue: magenta in the middle */
-    TEST_ASSERT_EQUAL_UINT16(1024, dock.decided_hue);
-    TEST_ASSERT_EQUAL_UINT16(1280, dock.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.decided_hue);
+    TEST_ASSERT_EQUAL_UINT16(1280, dock.decision.marker_hue);
     assert_duties(4096, 0, 4096);
 
     show(green_water, 2033);
@@ -106,9 +106,9 @@ static void test_the_window_is_that_of_the_settings(void)
     show(blue_water, 0);
 
     show(green_water, 99);
-    TEST_ASSERT_EQUAL_UINT16(1280, dock.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(1280, dock.decision.marker_hue);
     show(green_water, 199);
-    TEST_ASSERT_EQUAL_UINT16(1024, dock.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.marker_hue);
 }
 
 static void test_the_mapping_is_that_of_the_settings(void)
@@ -158,8 +158,8 @@ static void assert_refused(frame_t spoilt)
 
     assert_counters(1, 0, 1);
     assert_duties(4096, 0, 0);
-    TEST_ASSERT_EQUAL_UINT16(0, dock.decided_hue);
-    TEST_ASSERT_EQUAL_UINT8(1, dock.rolling.count);
+    TEST_ASSERT_EQUAL_UINT16(0, dock.decision.decided_hue);
+    TEST_ASSERT_EQUAL_UINT8(1, dock.decision.rolling.count);
 }
 
 static void test_a_frame_of_the_wrong_length_is_a_fault(void)
@@ -215,8 +215,9 @@ static void test_counters_stay_at_their_most(void)
     frame_t cut = canvas.frame;
     cut.length--;
     start();
-    dock.counters =
-        (dock_counters_t){UINT32_MAX - 1, UINT32_MAX - 1, UINT32_MAX - 1};
+    dock.decision.frames = UINT32_MAX - 1;
+    dock.camera_faults = UINT32_MAX - 1;
+    dock.decision.frame_faults = UINT32_MAX - 1;
     for (int i = 0; i < 3; i++) {
         dock_frame(&dock, &canvas.frame, 0);
         dock_frame(&dock, &cut, 0);

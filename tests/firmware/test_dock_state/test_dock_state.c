@@ -29,8 +29,10 @@ static void assert_same_dock(const dock_t *expected, const dock_t *actual)
     uint16_t a[3], b[3];
     dock_led_duties(expected, a);
     dock_led_duties(actual, b);
-    TEST_ASSERT_EQUAL_UINT16(expected->decided_hue, actual->decided_hue);
-    TEST_ASSERT_EQUAL_UINT16(expected->marker_hue, actual->marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(expected->decision.decided_hue,
+                             actual->decision.decided_hue);
+    TEST_ASSERT_EQUAL_UINT16(expected->decision.marker_hue,
+                             actual->decision.marker_hue);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(a, b, 3);
 }
 
@@ -126,9 +128,9 @@ static void test_a_fresh_start_forgets_everything(void)
 
     dock_led_duties(&first, duty);
     TEST_ASSERT_EQUAL_UINT16(4096, duty[0]);
-    TEST_ASSERT_EQUAL_UINT32(0, first.counters.frames);
-    TEST_ASSERT_EQUAL_UINT32(0, first.counters.camera_faults);
-    TEST_ASSERT_EQUAL_UINT8(0, first.rolling.count);
+    TEST_ASSERT_EQUAL_UINT32(0, first.decision.frames);
+    TEST_ASSERT_EQUAL_UINT32(0, first.camera_faults);
+    TEST_ASSERT_EQUAL_UINT8(0, first.decision.rolling.count);
 }
 
 static void test_a_run_equals_its_stages(void)
@@ -151,10 +153,10 @@ static void test_a_run_equals_its_stages(void)
         dock_frame(&first, &canvas.frame, 50 * i);
 
         dock_led_duties(&first, duty);
-        TEST_ASSERT_EQUAL_UINT16(decided, first.decided_hue);
-        TEST_ASSERT_EQUAL_UINT16(mean, first.marker_hue);
+        TEST_ASSERT_EQUAL_UINT16(decided, first.decision.decided_hue);
+        TEST_ASSERT_EQUAL_UINT16(mean, first.decision.marker_hue);
         TEST_ASSERT_EQUAL_UINT16_ARRAY(expected, duty, 3);
-        TEST_ASSERT_EQUAL_MEMORY(&background, &first.background,
+        TEST_ASSERT_EQUAL_MEMORY(&background, &first.decision.background,
                                  sizeof background);
         canvas_free_all();
     }
@@ -179,7 +181,7 @@ static void test_two_docks_do_not_disturb_each_other(void)
     }
 
     assert_same_dock(&alone, &first);
-    TEST_ASSERT_EQUAL_UINT32(0, first.counters.camera_faults);
+    TEST_ASSERT_EQUAL_UINT32(0, first.camera_faults);
 }
 
 static void test_a_dock_may_move_in_memory(void)

@@ -112,7 +112,7 @@ static void a_dock_given_the_frame_shows_its_golden_colour(void)
 
     uint16_t duties[3];
     dock_led_duties(&dock, duties);
-    TEST_ASSERT_EQUAL_UINT16(golden->marker_hue, dock.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(golden->marker_hue, dock.decision.marker_hue);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(golden->duties, duties, 3);
 }
 

@@ -168,7 +168,7 @@ static void test_defaults_come_back_on_command(void)
 
     assert_ack(MAV_CMD_PREFLIGHT_STORAGE, MAV_RESULT_ACCEPTED);
     TEST_ASSERT_EQUAL_MEMORY(&defaults, &dock.settings, sizeof defaults);
-    TEST_ASSERT_EQUAL_UINT8(DOCK_LED_AUTO, dock.led_mode);
+    TEST_ASSERT_EQUAL_UINT8(DOCK_LED_AUTO, dock.lamps.mode);
     TEST_ASSERT_EQUAL_INT(DOCK_REQUEST_CAMERA, dock_take_request(&dock));
     TEST_ASSERT_EQUAL_INT(DOCK_REQUEST_NONE, dock_take_request(&dock));
 }

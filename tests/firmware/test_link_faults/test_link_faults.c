@@ -201,8 +201,8 @@ static void inject_blue_then_camera_green(void)
 static void test_camera_frames_are_passed_over_while_a_host_injects(void)
 {
     inject_blue_then_camera_green();
-    TEST_ASSERT_EQUAL_UINT32(1, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT16(0, dock.marker_hue);
+    TEST_ASSERT_EQUAL_UINT32(1, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT16(0, dock.decision.marker_hue);
 }
 
 static void test_the_camera_is_back_three_seconds_after_the_last_packet(void)
@@ -210,8 +210,8 @@ static void test_the_camera_is_back_three_seconds_after_the_last_packet(void)
     inject_blue_then_camera_green();
     const canvas_t green = water(green_water);
     dock_frame(&dock, &green.frame, clock_ms + 3001);
-    TEST_ASSERT_EQUAL_UINT32(2, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT16(1024, dock.decided_hue);
+    TEST_ASSERT_EQUAL_UINT32(2, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.decided_hue);
 }
 
 static void test_the_camera_is_back_at_once_when_the_host_says_so(void)
@@ -220,7 +220,7 @@ static void test_the_camera_is_back_at_once_when_the_host_says_so(void)
     const canvas_t green = water(green_water);
     tell(wire_handshake(&(frame_t){.length = 0}));
     dock_frame(&dock, &green.frame, clock_ms + 3000);
-    TEST_ASSERT_EQUAL_UINT32(2, dock.counters.frames);
+    TEST_ASSERT_EQUAL_UINT32(2, dock.decision.frames);
 }
 
 static void test_half_an_injected_frame_is_dropped_with_the_injection(void)
@@ -234,8 +234,8 @@ static void test_half_an_injected_frame_is_dropped_with_the_injection(void)
     dock_frame(&dock, &green.frame, 3001);
     for (uint16_t i = 20; i < packets_in(&blue.frame); i++)
         tell(wire_packet(&blue.frame, i));
-    TEST_ASSERT_EQUAL_UINT32(1, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT16(1024, dock.decided_hue);
+    TEST_ASSERT_EQUAL_UINT32(1, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.decided_hue);
 }
 
 static void run_tests(void)

@@ -120,7 +120,7 @@ static void test_without_a_buffer_there_are_no_images(void)
     assert_silent();
     tell_frame(&canvas.frame);
     assert_text(MAV_SEVERITY_WARNING, "injection refused: size or format");
-    TEST_ASSERT_EQUAL_UINT32(1, dock.counters.frames);
+    TEST_ASSERT_EQUAL_UINT32(1, dock.decision.frames);
 }
 
 static void run_tests(void)

@@ -28,13 +28,13 @@ static void test_each_frame_feeds_it_once(void)
 {
     start_fresh_dock();
     run_to_first_frame();
-    const uint32_t frames = dock.counters.frames;
+    const uint32_t frames = dock.decision.frames;
     const int feeds = board.feeds;
 
     run_for(5000);
 
     TEST_ASSERT_GREATER_THAN(50, board.feeds - feeds);
-    TEST_ASSERT_EQUAL_INT(dock.counters.frames - frames, board.feeds - feeds);
+    TEST_ASSERT_EQUAL_INT(dock.decision.frames - frames, board.feeds - feeds);
 }
 
 static void test_each_reported_camera_fault_feeds_it(void)
@@ -46,7 +46,7 @@ static void test_each_reported_camera_fault_feeds_it(void)
     run_for(60000);
 
     TEST_ASSERT_INT_WITHIN(10, 60, board.feeds);
-    TEST_ASSERT_EQUAL_INT(dock.counters.camera_faults, board.feeds);
+    TEST_ASSERT_EQUAL_INT(dock.camera_faults, board.feeds);
 }
 
 static void test_settling_does_not_feed_it_and_stays_within_its_time(void)
@@ -66,7 +66,7 @@ static void test_settling_does_not_feed_it_and_stays_within_its_time(void)
 static void test_a_frame_lights_the_leds_in_the_same_turn(void)
 {
     start_fresh_dock();
-    while (!dock.decided)
+    while (!dock.decision.decided)
         turn_both();
 
     /* Green water: blue is +120 degrees from it. */
@@ -83,7 +83,7 @@ static void test_the_leds_keep_their_colour_while_the_camera_is_away(void)
 
     run_for(30000);
 
-    TEST_ASSERT_GREATER_THAN(5, dock.counters.camera_faults);
+    TEST_ASSERT_GREATER_THAN(5, dock.camera_faults);
     TEST_ASSERT_EQUAL_UINT32(4096, board.duty[2]);
 }
 
@@ -138,7 +138,7 @@ static void test_flash_is_written_while_the_camera_is_paused(void)
     /* Every buffer in hand: the driver has none to fill. */
     TEST_ASSERT_EQUAL_INT(2, out_at_write);
     TEST_ASSERT_EQUAL_INT(1, count_in_log("nvs_commit"));
-    TEST_ASSERT_EQUAL_INT(0, dock.faults & FAULT_STORAGE);
+    TEST_ASSERT_FALSE(dock.requests.failed);
 }
 
 static void test_capture_goes_on_after_a_save(void)
@@ -147,11 +147,11 @@ static void test_capture_goes_on_after_a_save(void)
     run_to_first_frame();
     request(DOCK_REQUEST_SAVE);
     run_for(1000);
-    const uint32_t frames = dock.counters.frames;
+    const uint32_t frames = dock.decision.frames;
 
     run_for(1000);
 
-    TEST_ASSERT_GREATER_THAN(frames + 8, dock.counters.frames);
+    TEST_ASSERT_GREATER_THAN(frames + 8, dock.decision.frames);
     TEST_ASSERT_EQUAL_INT(0, frames_out());
     TEST_ASSERT_EQUAL_INT(0, count_in_log("esp_camera_deinit"));
 }
@@ -163,12 +163,12 @@ static void test_a_save_that_fails_is_reported_and_capture_goes_on(void)
     board.set_error = ESP_ERR_NVS_NOT_ENOUGH_SPACE;
     request(DOCK_REQUEST_SAVE);
     run_for(1000);
-    TEST_ASSERT_NOT_EQUAL(0, dock.faults & FAULT_STORAGE);
-    const uint32_t frames = dock.counters.frames;
+    TEST_ASSERT_TRUE(dock.requests.failed);
+    const uint32_t frames = dock.decision.frames;
 
     run_for(1000);
 
-    TEST_ASSERT_GREATER_THAN(frames + 8, dock.counters.frames);
+    TEST_ASSERT_GREATER_THAN(frames + 8, dock.decision.frames);
 }
 
 static void test_settings_are_saved_without_a_camera(void)
@@ -196,7 +196,7 @@ static void test_a_camera_that_fails_while_pausing_does_not_stop_a_save(void)
     run_for(10000);
 
     TEST_ASSERT_EQUAL_INT(1, count_in_log("nvs_commit"));
-    TEST_ASSERT_GREATER_THAN(0, dock.counters.camera_faults);
+    TEST_ASSERT_GREATER_THAN(0, dock.camera_faults);
 }
 
 static void test_frames_from_before_a_pause_are_dropped(void)
@@ -273,7 +273,7 @@ static void test_a_reboot_waits_for_a_slow_line(void)
     start_fresh_dock();
     run_to_first_frame();
     board.fifo = 0; /* full */
-    dock.link.version_due = true;
+    dock.link.reports[REPORT_VERSION].state = REPORT_DUE;
     loop(); /* a message is on its way and does not fit */
     request(DOCK_REQUEST_REBOOT);
     TEST_ASSERT_EQUAL_INT(-1, ms_to_restart(3000));
@@ -297,7 +297,7 @@ static void test_a_host_that_keeps_asking_does_not_put_off_a_reboot(void)
     run_to_first_frame();
     board.fifo = 5; /* slower than what there is to say */
     board.while_waiting = [] {
-        dock.link.version_due = true;
+        dock.link.reports[REPORT_VERSION].state = REPORT_DUE;
         loop();
     };
     run_for(1000);
@@ -306,7 +306,7 @@ static void test_a_host_that_keeps_asking_does_not_put_off_a_reboot(void)
 
     try {
         while (now_ms() < began + 60000) {
-            dock.link.version_due = true;
+            dock.link.reports[REPORT_VERSION].state = REPORT_DUE;
             turn_both();
         }
         TEST_FAIL_MESSAGE("no restart");
@@ -352,13 +352,13 @@ static void test_a_wrapped_clock_does_not_stop_the_dock(void)
     board.us = (int64_t{1} << 32) * 1000 - 10000000;
     start_dock();
     run_for(8000);
-    const uint32_t frames = dock.counters.frames;
+    const uint32_t frames = dock.decision.frames;
     TEST_ASSERT_GREATER_THAN(20, frames);
 
     run_for(8000);
 
-    TEST_ASSERT_GREATER_THAN(frames + 70, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT32(0, dock.counters.camera_faults);
+    TEST_ASSERT_GREATER_THAN(frames + 70, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT32(0, dock.camera_faults);
 }
 
 static void run_tests(void)

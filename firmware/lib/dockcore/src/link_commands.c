@@ -30,49 +30,55 @@ static int32_t hue_of_degrees(const float *argument)
     return hue % METHOD_HUE_RANGE;
 }
 
-static uint8_t set_leds(dock_t *dock, const mavlink_command_long_t *command)
+static uint8_t show_hue(lamps_t *lamps, const mavlink_command_long_t *command)
+{
+    const int32_t hue = hue_of_degrees(&command->param2);
+    if (hue < 0)
+        return MAV_RESULT_DENIED;
+    lamps_show_hue(lamps, (uint16_t)hue);
+    return MAV_RESULT_ACCEPTED;
+}
+
+static uint8_t show_raw(lamps_t *lamps, const mavlink_command_long_t *command)
 {
     const int64_t rgb[3] = {whole(&command->param2), whole(&command->param3),
                             whole(&command->param4)};
-    const int32_t hue = hue_of_degrees(&command->param2);
+    uint8_t raw[3];
+    for (int i = 0; i < 3; i++) {
+        if (rgb[i] < 0 || rgb[i] > 255)
+            return MAV_RESULT_DENIED;
+        raw[i] = (uint8_t)rgb[i];
+    }
+    lamps_show_raw(lamps, raw);
+    return MAV_RESULT_ACCEPTED;
+}
+
+static uint8_t set_leds(lamps_t *lamps, const mavlink_command_long_t *command)
+{
     switch (whole(&command->param1)) {
     case DOCK_LED_AUTO:
-        break;
+        lamps_show_marker(lamps);
+        return MAV_RESULT_ACCEPTED;
     case DOCK_LED_HUE:
-        if (hue < 0)
-            return MAV_RESULT_DENIED;
-        dock->led_hue = (uint16_t)hue;
-        break;
+        return show_hue(lamps, command);
     case DOCK_LED_RAW:
-        for (int i = 0; i < 3; i++)
-            if (rgb[i] < 0 || rgb[i] > 255)
-                return MAV_RESULT_DENIED;
-        for (int i = 0; i < 3; i++)
-            dock->led_raw[i] = (uint8_t)rgb[i];
-        break;
+        return show_raw(lamps, command);
     default:
         return MAV_RESULT_DENIED;
     }
-    dock->led_mode = (uint8_t)whole(&command->param1);
-    return MAV_RESULT_ACCEPTED;
 }
 
 static uint8_t store(dock_t *dock, const mavlink_command_long_t *command,
                      const link_ack_t *ack)
 {
-    const dock_settings_t before = dock->settings;
     switch (whole(&command->param1)) {
     case 1: /* write */
-        if (dock->link.saving)
+        if (!requests_save(&dock->requests))
             return MAV_RESULT_TEMPORARILY_REJECTED;
-        dock->requests |= 1u << DOCK_REQUEST_SAVE;
-        dock->link.save_ack = *ack;
-        dock->link.saving = true;
+        link_answer_save_later(&dock->link, ack);
         return MAV_RESULT_IN_PROGRESS;
     case 2: /* back to the defaults; not yet in flash */
-        dock->settings = dock_default_settings();
-        link_settings_changed(dock, &before);
-        link_report_parameters(dock);
+        link_reset_parameters(dock);
         return MAV_RESULT_ACCEPTED;
     default:
         return MAV_RESULT_DENIED;
@@ -83,7 +89,7 @@ static uint8_t reboot(dock_t *dock, const mavlink_command_long_t *command)
 {
     if (whole(&command->param1) != 1)
         return MAV_RESULT_DENIED;
-    dock->requests |= 1u << DOCK_REQUEST_REBOOT;
+    requests_reboot(&dock->requests);
     return MAV_RESULT_ACCEPTED;
 }
 
@@ -92,10 +98,10 @@ static uint8_t request_message(dock_t *dock,
 {
     switch (whole(&command->param1)) {
     case MAVLINK_MSG_ID_AUTOPILOT_VERSION:
-        dock->link.version_due = true;
+        link_ask_for_report(&dock->link, REPORT_VERSION);
         return MAV_RESULT_ACCEPTED;
     case MAVLINK_MSG_ID_DOCK_STATUS:
-        dock->link.status_due = true;
+        link_ask_for_report(&dock->link, REPORT_STATUS);
         return MAV_RESULT_ACCEPTED;
     default:
         return MAV_RESULT_DENIED;
@@ -106,10 +112,8 @@ static uint8_t snapshot(dock_t *dock)
 {
     if (dock->board.buffer == NULL)
         return MAV_RESULT_UNSUPPORTED;
-    if (!link_can_snapshot(dock))
-        return MAV_RESULT_TEMPORARILY_REJECTED;
-    dock->link.snapshot_wanted = true;
-    return MAV_RESULT_ACCEPTED;
+    return link_want_snapshot(dock) ? MAV_RESULT_ACCEPTED
+                                    : MAV_RESULT_TEMPORARILY_REJECTED;
 }
 
 static uint8_t obey(dock_t *dock, const mavlink_command_long_t *command,
@@ -117,7 +121,7 @@ static uint8_t obey(dock_t *dock, const mavlink_command_long_t *command,
 {
     switch (command->command) {
     case MAV_CMD_DOCK_LED:
-        return set_leds(dock, command);
+        return set_leds(&dock->lamps, command);
     case MAV_CMD_DOCK_SNAPSHOT:
         return snapshot(dock);
     case MAV_CMD_PREFLIGHT_STORAGE:
@@ -127,7 +131,7 @@ static uint8_t obey(dock_t *dock, const mavlink_command_long_t *command,
     case MAV_CMD_REQUEST_MESSAGE:
         return request_message(dock, command);
     case MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
-        dock->link.version_due = true;
+        link_ask_for_report(&dock->link, REPORT_VERSION);
         return MAV_RESULT_ACCEPTED;
     default:
         return MAV_RESULT_UNSUPPORTED;
@@ -145,34 +149,7 @@ void link_on_command(dock_t *dock, const received_t *message, uint32_t now_ms)
                       message->component};
     ack.result = obey(dock, &command, &ack);
     if (ack.result == MAV_RESULT_DENIED)
-        dock->link.faults++;
+        link_count_fault(&dock->link);
     if (ack.result != MAV_RESULT_IN_PROGRESS) /* that one is answered later */
-        link_acknowledge(dock, &ack);
-}
-
-/* An answer that finds no room is dropped: the host asks again. */
-void link_acknowledge(dock_t *dock, const link_ack_t *ack)
-{
-    link_t *link = &dock->link;
-    if (link->ack_count < LINK_ACKS)
-        link->acks[link->ack_count++] = *ack;
-}
-
-bool link_send_acks(dock_t *dock, sender_t *sender)
-{
-    link_t *link = &dock->link;
-    while (link->ack_count > 0) {
-        const link_ack_t *ack = &link->acks[0];
-        mavlink_command_ack_t answer;
-        memset(&answer, 0, sizeof answer);
-        answer.command = ack->command;
-        answer.result = ack->result;
-        answer.target_system = ack->system;
-        answer.target_component = ack->component;
-        if (!MESSAGE_SEND(sender, COMMAND_ACK, &answer))
-            return false;
-        memmove(link->acks, link->acks + 1,
-                --link->ack_count * sizeof link->acks[0]);
-    }
-    return true;
+        link_acknowledge(&dock->link, &ack);
 }

@@ -32,8 +32,8 @@ static void refuse_name(dock_t *dock, const char name[NAME_LENGTH])
     line_t line = {{0}, 0};
     line_add(&line, words);
     line_add(&line, ": no such parameter");
-    link_say(dock, MAV_SEVERITY_WARNING, &line);
-    dock->link.faults++;
+    link_say(&dock->link, MAV_SEVERITY_WARNING, &line);
+    link_count_fault(&dock->link);
 }
 
 static void refuse_index(dock_t *dock, int index)
@@ -42,8 +42,8 @@ static void refuse_index(dock_t *dock, int index)
     line_add(&line, "parameter ");
     line_add_fixed(&line, index, 0);
     line_add(&line, ": no such parameter");
-    link_say(dock, MAV_SEVERITY_WARNING, &line);
-    dock->link.faults++;
+    link_say(&dock->link, MAV_SEVERITY_WARNING, &line);
+    link_count_fault(&dock->link);
 }
 
 static void refuse_value(dock_t *dock, const parameter_t *parameter)
@@ -54,13 +54,8 @@ static void refuse_value(dock_t *dock, const parameter_t *parameter)
     add_shown(&line, parameter, parameter->minimum);
     line_add(&line, " to ");
     add_shown(&line, parameter, parameter->maximum);
-    link_say(dock, MAV_SEVERITY_WARNING, &line);
-    dock->link.faults++;
-}
-
-void link_report_parameters(dock_t *dock)
-{
-    dock->link.parameters_due = ALL_PARAMETERS;
+    link_say(&dock->link, MAV_SEVERITY_WARNING, &line);
+    link_count_fault(&dock->link);
 }
 
 void link_on_parameter_list(dock_t *dock, const received_t *message,
@@ -70,7 +65,7 @@ void link_on_parameter_list(dock_t *dock, const received_t *message,
     mavlink_param_request_list_t request;
     message_read(&request, sizeof request, message);
     if (link_is_for_us(request.target_system, request.target_component))
-        link_report_parameters(dock);
+        dock->link.parameters_due = ALL_PARAMETERS;
 }
 
 void link_on_parameter_read(dock_t *dock, const received_t *message,
@@ -91,24 +86,26 @@ void link_on_parameter_read(dock_t *dock, const received_t *message,
         refuse_index(dock, index);
 }
 
-_Static_assert((int)DOCK_LED_AUTO == 0 && (int)DOCK_LED_HUE == 1,
-               "LED_MODE's values are DOCK_LED's first two");
-
 static bool same_camera(const camera_settings_t *a, const camera_settings_t *b)
 {
     return a->lock == b->lock && a->exposure == b->exposure &&
            a->gain == b->gain && a->white_balance == b->white_balance;
 }
 
-void link_settings_changed(dock_t *dock, const dock_settings_t *before)
+/* After any change of the settings: what follows from it. */
+static void settings_changed(dock_t *dock, const dock_settings_t *before)
 {
-    const dock_settings_t *now = &dock->settings;
-    if (!same_camera(&before->camera, &now->camera))
-        dock->requests |= 1u << DOCK_REQUEST_CAMERA;
-    if (before->led_mode != now->led_mode || before->led_hue != now->led_hue) {
-        dock->led_mode = now->led_mode;
-        dock->led_hue = now->led_hue;
-    }
+    if (!same_camera(&before->camera, &dock->settings.camera))
+        requests_camera(&dock->requests);
+    lamps_follow(&dock->lamps, before, &dock->settings);
+}
+
+void link_reset_parameters(dock_t *dock)
+{
+    const dock_settings_t before = dock->settings;
+    dock->settings = dock_default_settings();
+    settings_changed(dock, &before);
+    dock->link.parameters_due = ALL_PARAMETERS;
 }
 
 void link_on_parameter_set(dock_t *dock, const received_t *message,
@@ -131,13 +128,14 @@ void link_on_parameter_set(dock_t *dock, const received_t *message,
     if (!parameter_from_real32(&PARAMETERS[index], bits, &stored) ||
         !parameter_set(&PARAMETERS[index], &dock->settings, stored))
         refuse_value(dock, &PARAMETERS[index]);
-    link_settings_changed(dock, &before);
+    settings_changed(dock, &before);
     /* The value as it is now, refused or not: that is the answer. */
     dock->link.parameters_due |= UINT32_C(1) << index;
 }
 
-bool link_send_parameters(dock_t *dock, sender_t *sender)
+bool link_send_parameters(dock_t *dock, sender_t *sender, uint32_t now_ms)
 {
+    (void)now_ms;
     for (uint16_t i = 0; i < PARAMETER_COUNT; i++) {
         const uint32_t bit = UINT32_C(1) << i;
         if ((dock->link.parameters_due & bit) == 0)

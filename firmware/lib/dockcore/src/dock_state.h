@@ -1,0 +1,42 @@
+/* The dock's state.  Each part has one owner, the file of its name, which alone
+ * writes it; the others call the owner or read.  Calls run one way:
+ *
+ *   dock.c -> link.c -> link_*.c -> decision, lamps, requests, settings */
+#ifndef DOCK_STATE_H
+#define DOCK_STATE_H
+
+#include "decision.h"
+#include "lamps.h"
+#include "link.h"
+#include "requests.h"
+#include "settings.h"
+
+/* What the board knows of itself, told once after dock_init. */
+typedef struct {
+    uint8_t reset_reason;  /* as the chip counts */
+    bool settings_corrupt; /* what flash held was no valid blob */
+    uint8_t git_hash[8];   /* ASCII, first letters of the commit */
+    uint8_t *buffer;       /* for a snapshot or an injected frame; NULL: none */
+    uint32_t capacity;     /* of it, bytes; even address */
+} dock_board_t;
+
+/* What the camera is set to now, read back from the sensor. */
+typedef struct {
+    uint16_t exposure;
+    uint8_t gain;
+    bool locked;
+} dock_camera_t;
+
+typedef struct {
+    dock_settings_t settings; /* changed by link_parameters.c alone */
+    dock_board_t board;       /* dock.c, but for what the buffer holds */
+    dock_camera_t camera;     /* dock.c */
+    uint32_t camera_faults;   /* dock.c: times that the camera gave no frame */
+    bool camera_lost;         /* dock.c: whether it gave none the last time */
+    decision_t decision;
+    lamps_t lamps;
+    requests_t requests;
+    link_t link;
+} dock_t;
+
+#endif

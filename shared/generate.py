@@ -61,6 +61,7 @@ def outputs() -> dict[str, bytes]:
         "banner": banner,
         "frames": frames,
         "rolling": golden.rolling_vectors(method, lookup),
+        "steady": golden.steady_vectors(method, lookup),
         "led": golden.led_vectors(method, lookup),
         "mappings": golden.mapping_vectors(method, lookup),
     }

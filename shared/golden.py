@@ -210,6 +210,40 @@ def rolling_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
     return vectors
 
 
+def steady_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
+    """Sequences of decisions, with their kind, and the hue shown after each."""
+    rng = random.Random(11)
+    wrap, fallback = 1 << 32, m["marker"]["fallback_hue"]
+    window, hold = m["rolling"]["window_ms"], m["rolling"]["hold_ms"]
+
+    def kinds(start: int, step: int, *runs: tuple[bool, int]) -> list[tuple[int, bool, int]]:
+        decisions, now = [], start
+        for meaningful, count in runs:
+            for _ in range(count):
+                hue = 900 + int(40 * rng.random()) if meaningful else fallback
+                decisions.append((now % wrap, meaningful, hue))
+                now += step
+        return decisions
+
+    sequences = {
+        "one_kind": kinds(0, 100, (True, 40)),
+        "grey_for_less_than_the_hold": kinds(0, 100, (True, 20), (False, 9), (True, 20)),
+        "grey_for_as_long_as_the_hold": kinds(0, 100, (True, 20), (False, 30), (True, 30)),
+        "turns": kinds(0, 100, *[(True, 2), (False, 1)] * 20),
+        "night_first": kinds(0, 33, (False, 40), (True, 60)),
+        "one_ms_short": [(0, True, 900), (hold - 1, False, 512), (hold, False, 512)],
+        "slow_camera": kinds(0, 2500, (True, 3), (False, 3), (True, 2)),
+        "clock_wrap": kinds(wrap - 900, 100, (True, 5), (False, 25)),
+        "clock_set_back": [(5000, True, 10), (5033, False, 512), (40, False, 512), (73, True, 20)],
+    }
+    vectors = []
+    for name, decisions in sequences.items():
+        steady = reference.SteadyHue(m, t, window)
+        shown = [steady.add(meaningful, hue, now) for now, meaningful, hue in decisions]
+        vectors.append({"name": name, "window_ms": window, "decisions": decisions, "shown": shown})
+    return vectors
+
+
 def mapping_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
     """Every mapping's marker for water of every hue."""
     fallback = m["marker"]["fallback_hue"]

@@ -3,6 +3,7 @@
 #include <esp_system.h>
 
 #include "clock.h"
+#include "last_hue.h"
 #include "mailbox.h"
 #include "port.h"
 #include "pwm.h"
@@ -61,7 +62,9 @@ void Loop::camera()
         return;
     dock_set_camera(dock, &report.camera);
     if (report.event == CAMERA_FRAME) {
-        const frame_t frame = frame_of(*report.frame);
+        frame_t frame = frame_of(*report.frame);
+        frame.age_ms =
+            exposure.age_ms(camera_began_us(*report.frame), clock_us());
         dock_frame(dock, &frame, clock_ms());
         watchdog_feed();
     } else if (report.event == CAMERA_FAULT) {
@@ -103,8 +106,9 @@ void Loop::requests()
 void Loop::leds()
 {
     uint16_t duty[3];
-    dock_led_duties(dock, duty);
+    dock_led_duties(dock, duty, clock_ms());
     pwm_set(duty, dock->settings.led.common_anode);
+    last_hue_keep(dock_hue(dock));
 }
 
 void Loop::transmit()

@@ -28,8 +28,11 @@ static uint32_t fill_window(const golden_frame_t *golden)
     const dock_settings_t settings = golden_settings(golden);
     uint32_t now_ms = 0;
     dock_init(&dock, &settings);
+    dock.decision.decided = true;
+    dock.decision.water_value = golden->background.value;
     for (uint16_t i = 0; i < METHOD_WINDOW_CAPACITY; i++) {
-        rolling_add(&dock.decision.rolling, i, now_ms, settings.window_ms);
+        steady_take(&dock.decision.steady, golden->background.meaningful, i,
+                    settings.window_ms, now_ms);
         now_ms += FRAME_MS;
     }
     return now_ms;
@@ -45,7 +48,7 @@ static void count_frame(const golden_frame_t *golden, const char *kind,
     dock.decision.background.bin = bin;
     const uint32_t start = ticks();
     dock_frame(&dock, &frame, now_ms);
-    dock_led_duties(&dock, duties);
+    dock_led_duties(&dock, duties, now_ms);
     put_instructions(golden->name, kind, instructions_between(start, ticks()));
 }
 
@@ -75,8 +78,8 @@ static void count_stages(const golden_frame_t *golden)
     const uint32_t summed = ticks();
     const uint16_t hue =
         marker_hue(&background, settings->mapping, settings->fallback_hue);
-    const uint16_t mean =
-        rolling_add(&dock.decision.rolling, hue, now_ms, settings->window_ms);
+    const uint16_t mean = rolling_add(&dock.decision.steady.rolling, hue,
+                                      now_ms, settings->window_ms);
     led_duties(duties, mean, &settings->led);
     const uint32_t decided = ticks();
     /* Each stage draws its rows from the one before. */

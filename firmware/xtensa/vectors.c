@@ -6,8 +6,12 @@
 
 frame_t golden_frame(const golden_frame_t *golden)
 {
-    return (frame_t){golden_pixels + golden->frame_at, golden->frame_bytes,
-                     golden->width, golden->height, golden->format};
+    return (frame_t){golden_pixels + golden->frame_at,
+                     golden->frame_bytes,
+                     golden->width,
+                     golden->height,
+                     golden->format,
+                     0};
 }
 
 dock_settings_t golden_settings(const golden_frame_t *golden)
@@ -76,8 +80,12 @@ static void load_image(whole_image_t *image, const uint8_t *rgb)
  */
 static frame_t working_frame(const golden_frame_t *golden)
 {
-    return (frame_t){golden_pixels + golden->working_at, 3 * WORKING_PIXELS,
-                     WORKING_WIDTH, WORKING_HEIGHT, FRAME_RGB888};
+    return (frame_t){golden_pixels + golden->working_at,
+                     3 * WORKING_PIXELS,
+                     WORKING_WIDTH,
+                     WORKING_HEIGHT,
+                     FRAME_RGB888,
+                     0};
 }
 
 /* Each stage starts from golden values: a fault shows in its own stage only. */
@@ -127,11 +135,12 @@ static void check_dock(const golden_frame_t *golden)
 
     dock_init(&dock, &settings);
     dock_frame(&dock, &frame, 0);
-    dock_led_duties(&dock, duties);
+    dock_led_duties(&dock, duties, 0);
     check_background(&golden->background, &dock.decision.background);
     check_value("decided_hue", 0, golden->marker_hue,
                 dock.decision.decided_hue);
-    check_value("marker_hue", 0, golden->marker_hue, dock.decision.marker_hue);
+    check_value("marker_hue", 0, golden->marker_hue,
+                dock.decision.steady.shown);
     check_value("decided", 0, true, dock.decision.decided);
     check_value("frames", 0, 1, dock.decision.frames);
     check_value("camera_faults", 0, 0, dock.camera_faults);
@@ -165,6 +174,27 @@ void check_rolling(void)
         check_value("mean", step, golden->mean,
                     rolling_add(&rolling, golden->hue, golden->now_ms,
                                 METHOD_WINDOW_MS));
+    }
+    if (sequences > 0)
+        check_end();
+}
+
+void check_steady(void)
+{
+    static steady_t steady;
+    uint32_t sequences = 0, step = 0;
+    for (size_t i = 0; i < golden_steady_count; i++, step++) {
+        const golden_steady_t *golden = &golden_steady[i];
+        if (golden->first) {
+            if (i > 0)
+                check_end();
+            check_begin("steady", NULL, sequences++);
+            steady_init(&steady);
+            step = 0;
+        }
+        steady_add(&steady, golden->meaningful, golden->hue, METHOD_WINDOW_MS,
+                   golden->now_ms);
+        check_value("shown", step, golden->shown, steady.shown);
     }
     if (sequences > 0)
         check_end();

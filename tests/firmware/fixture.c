@@ -35,7 +35,7 @@ canvas_t canvas_new(frame_format_t format, uint32_t width, uint32_t height)
         TEST_IGNORE_MESSAGE("too little memory for this frame");
     buffers[buffer_count++] = bytes;
     return (canvas_t){
-        {bytes, length, (uint16_t)width, (uint16_t)height, format}, bytes};
+        {bytes, length, (uint16_t)width, (uint16_t)height, format, 0}, bytes};
 }
 
 canvas_t canvas_of(frame_format_t format, uint32_t width, uint32_t height,

@@ -58,6 +58,8 @@ def test_every_golden_value_was_compared(measured: dict[str, Any], golden: dict[
         expected["dock", frame["name"]] = background + DOCK_VALUES + duties
     for number, sequence in enumerate(golden["rolling"]):
         expected["rolling", str(number)] = len(sequence["means"])
+    for number, sequence in enumerate(golden["steady"]):
+        expected["steady", str(number)] = len(sequence["shown"])
     for number, led in enumerate(golden["led"]):
         expected["led", str(number)] = len(led["duties"])
     for number, mapping in enumerate(golden["mappings"]):

@@ -24,15 +24,15 @@ static void show(dock_t *dock, uint32_t frame_number)
     canvas_free_all();
 }
 
-static void assert_same_dock(const dock_t *expected, const dock_t *actual)
+static void assert_same_dock(dock_t *expected, dock_t *actual)
 {
     uint16_t a[3], b[3];
-    dock_led_duties(expected, a);
-    dock_led_duties(actual, b);
+    dock_led_duties(expected, a, 0);
+    dock_led_duties(actual, b, 0);
     TEST_ASSERT_EQUAL_UINT16(expected->decision.decided_hue,
                              actual->decision.decided_hue);
-    TEST_ASSERT_EQUAL_UINT16(expected->decision.marker_hue,
-                             actual->decision.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(expected->decision.steady.shown,
+                             actual->decision.steady.shown);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(a, b, 3);
 }
 
@@ -126,11 +126,11 @@ static void test_a_fresh_start_forgets_everything(void)
 
     dock_init(&first, &settings);
 
-    dock_led_duties(&first, duty);
+    dock_led_duties(&first, duty, 0);
     TEST_ASSERT_EQUAL_UINT16(4096, duty[0]);
     TEST_ASSERT_EQUAL_UINT32(0, first.decision.frames);
     TEST_ASSERT_EQUAL_UINT32(0, first.camera_faults);
-    TEST_ASSERT_EQUAL_UINT8(0, first.decision.rolling.count);
+    TEST_ASSERT_EQUAL_UINT8(0, first.decision.steady.rolling.count);
 }
 
 static void test_a_run_equals_its_stages(void)
@@ -152,9 +152,9 @@ static void test_a_run_equals_its_stages(void)
 
         dock_frame(&first, &canvas.frame, 50 * i);
 
-        dock_led_duties(&first, duty);
+        dock_led_duties(&first, duty, 0);
         TEST_ASSERT_EQUAL_UINT16(decided, first.decision.decided_hue);
-        TEST_ASSERT_EQUAL_UINT16(mean, first.decision.marker_hue);
+        TEST_ASSERT_EQUAL_UINT16(mean, first.decision.steady.shown);
         TEST_ASSERT_EQUAL_UINT16_ARRAY(expected, duty, 3);
         TEST_ASSERT_EQUAL_MEMORY(&background, &first.decision.background,
                                  sizeof background);

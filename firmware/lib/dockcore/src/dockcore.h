@@ -15,6 +15,7 @@
 #include "real32.h"
 #include "rolling.h"
 #include "smooth.h"
+#include "steady.h"
 #include "working_image.h"
 
 #endif

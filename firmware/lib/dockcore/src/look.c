@@ -1,0 +1,152 @@
+#include "look.h"
+
+#include <string.h>
+
+/* Of the time that a look took, lit between two of them: 2 % are dark. */
+#define LIT_SHARE 49
+#define FIRST_PAUSE_MS (LIT_SHARE * UINT32_C(200))
+#define CLEAR_PAUSE_MS 60000
+/* Decisions that come every ten seconds are averaged over a minute. */
+#define DARK_WINDOW_MS 60000
+/* Markers of a dark frame and of a lit one, where the lamps change nothing. */
+#define SAME_HUE (4 * METHOD_HUE_RANGE / 360)
+/* The water's hue and that of the lamps, where it may be theirs. */
+#define OWN_HUE (30 * METHOD_HUE_RANGE / 360)
+/* So long in a row frames may be odd before they are doubted. */
+#define DOUBT_MS 1000
+
+void look_init(look_t *look)
+{
+    memset(look, 0, sizeof *look);
+    look->clear = true;
+    look->dark_ms = FIRST_PAUSE_MS / LIT_SHARE;
+    look->pause_ms = FIRST_PAUSE_MS;
+}
+
+static void go_on(look_t *look, look_state_t state, uint32_t now_ms)
+{
+    look->state = state;
+    look->since_ms = now_ms;
+    look->due = false;
+}
+
+static void end_look(look_t *look, uint32_t now_ms)
+{
+    look->dark_ms = now_ms - look->since_ms;
+    look->pause_ms = LIT_SHARE * look->dark_ms;
+    if (look->clear && look->pause_ms < CLEAR_PAUSE_MS)
+        look->pause_ms = CLEAR_PAUSE_MS;
+    go_on(look, LOOK_LIT, now_ms);
+}
+
+void look_turn(look_t *look, look_lamps_t lamps, uint32_t now_ms)
+{
+    if (look->state == LOOK_UNLIT && lamps.lit)
+        go_on(look, LOOK_LIT, now_ms);
+    if (look->state == LOOK_LIT && look->due && lamps.follows)
+        go_on(look, LOOK_DARK, now_ms);
+    if (look->state == LOOK_DARK &&
+        (!lamps.follows || now_ms - look->since_ms >= LOOK_LONGEST_MS)) {
+        look->failed = lamps.follows;
+        end_look(look, now_ms);
+    }
+}
+
+bool look_is_on(const look_t *look)
+{
+    return look->state == LOOK_DARK;
+}
+
+/* What decided up to here was perhaps the lamps' own light. */
+static void doubt(look_t *look, decision_t *decision)
+{
+    if (!look->clear)
+        return;
+    look->clear = false;
+    look->pause_ms = LIT_SHARE * look->dark_ms;
+    decision_forget(decision);
+}
+
+static bool looks_like_lamps(const decision_t *decision)
+{
+    return decision->background.meaningful &&
+           hue_distance(decision->background.hue, decision->steady.shown) <
+               OWN_HUE;
+}
+
+/* A look without a frame: the camera is too slow.  By day that does no harm. */
+static void after_failure(look_t *look, decision_t *decision,
+                          const dock_settings_t *settings, bool own,
+                          uint32_t now_ms)
+{
+    look->failed = false;
+    if (look->clear)
+        return;
+    if (look->lit.value >= DECISION_DIM_VALUE && !own)
+        look->clear = true;
+    else
+        decision_take_none(decision, settings, DARK_WINDOW_MS, now_ms);
+}
+
+static void lit_frame(look_t *look, decision_t *decision,
+                      const dock_settings_t *settings, bool follows,
+                      uint32_t now_ms)
+{
+    const background_t *seen = &decision->background;
+    const bool own = follows && looks_like_lamps(decision);
+    look->lit.known = true;
+    look->lit.meaningful = seen->meaningful;
+    look->lit.hue = decision->decided_hue;
+    look->lit.value = seen->value;
+    if (look->failed)
+        after_failure(look, decision, settings, own, now_ms);
+    const bool taken = (look->clear || !follows) &&
+                       decision_take(decision, settings->window_ms, now_ms);
+    if (!follows || (!own && (taken || !decision_is_dim(decision))))
+        look->plain_ms = now_ms;
+    else if (now_ms - look->plain_ms >= DOUBT_MS)
+        doubt(look, decision);
+}
+
+/* Whether a frame without the lamps' light says what one with it said. */
+static bool agrees(const look_t *look, const decision_t *decision)
+{
+    return look->lit.known &&
+           look->lit.meaningful == decision->background.meaningful &&
+           hue_distance(look->lit.hue, decision->decided_hue) <= SAME_HUE;
+}
+
+static void dark_frame(look_t *look, decision_t *decision, uint32_t now_ms)
+{
+    if (agrees(look, decision))
+        look->clear = true;
+    else
+        doubt(look, decision);
+    look->failed = false;
+    decision_take(decision, DARK_WINDOW_MS, now_ms);
+    end_look(look, now_ms);
+    look->plain_ms = now_ms;
+}
+
+void look_frame(look_t *look, decision_t *decision,
+                const dock_settings_t *settings, bool follows,
+                uint32_t light_from_ms, uint32_t now_ms)
+{
+    if (look->state == LOOK_UNLIT || !decision->decided) {
+        decision_take(decision, settings->window_ms, now_ms);
+        look->plain_ms = now_ms;
+        return;
+    }
+    /* Else the lamps went out or on while it was exposed. */
+    const bool whole = light_from_ms - look->since_ms <= INT32_MAX;
+    if (look->state == LOOK_DARK) {
+        if (whole)
+            dark_frame(look, decision, now_ms);
+        return;
+    }
+    if (whole)
+        lit_frame(look, decision, settings, follows, now_ms);
+    /* Right after a frame, or that frame would be lost to the look. */
+    if (follows && now_ms - look->since_ms >= look->pause_ms)
+        look->due = true;
+}

@@ -59,6 +59,7 @@ static void camera_fault(dock_t *dock)
 void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms)
 {
     const bool injecting = link_injection_lasts(&dock->link, now_ms);
+    lamps_turn(&dock->lamps, now_ms);
     if (frame == NULL || frame->bytes == NULL) {
         camera_fault(dock);
         return;

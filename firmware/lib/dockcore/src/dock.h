@@ -31,10 +31,10 @@ uint16_t dock_hue(const dock_t *dock);
  * a frame that is not valid, is counted and changes no colour.  While a host
  * injects frames the camera's are passed over.
  *
- * Of a frame that was exposed while the lamps went out or on again nothing is
- * taken: its age_ms must be no less than the time since the first of its light
- * was gathered.  For a rolling shutter that runs freely that is at most a
- * frame's period before its first row is read. */
+ * A frame that was exposed while the lamps went out or on again tells nothing
+ * of their light: its age_ms must be no less than the time since the first of
+ * its light was gathered.  For a rolling shutter that runs freely that is at
+ * most a frame's period before its first row is read. */
 void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms);
 
 /* Bytes from the host, in any pieces, with anything between the messages. */

@@ -31,7 +31,8 @@ void lamps_show_marker(lamps_t *lamps);
 void lamps_show_hue(lamps_t *lamps, uint16_t hue);
 void lamps_show_raw(lamps_t *lamps, const uint8_t rgb[3]);
 
-/* To be called before the lamps are driven: sees that a dock without a decision
+/* To be called with every frame and fault and before the lamps are driven, from
+ * the start on: sees that a dock without a decision
  * does not stay dark for longer than DECISION_WAIT_MS. */
 void lamps_turn(lamps_t *lamps, uint32_t now_ms);
 

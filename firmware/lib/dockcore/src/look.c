@@ -116,14 +116,16 @@ static bool agrees(const look_t *look, const decision_t *decision)
            hue_distance(look->lit.hue, decision->decided_hue) <= SAME_HUE;
 }
 
-static void dark_frame(look_t *look, decision_t *decision, uint32_t now_ms)
+static void dark_frame(look_t *look, decision_t *decision,
+                       const dock_settings_t *settings, uint32_t now_ms)
 {
     if (agrees(look, decision))
         look->clear = true;
     else
         doubt(look, decision);
     look->failed = false;
-    decision_take(decision, DARK_WINDOW_MS, now_ms);
+    decision_take(decision, look->clear ? settings->window_ms : DARK_WINDOW_MS,
+                  now_ms);
     end_look(look, now_ms);
     look->plain_ms = now_ms;
 }
@@ -139,14 +141,14 @@ void look_frame(look_t *look, decision_t *decision,
     }
     /* Else the lamps went out or on while it was exposed. */
     const bool whole = light_from_ms - look->since_ms <= INT32_MAX;
-    if (look->state == LOOK_DARK) {
-        if (whole)
-            dark_frame(look, decision, now_ms);
-        return;
-    }
-    if (whole)
+    if (whole && look->state == LOOK_DARK)
+        dark_frame(look, decision, settings, now_ms);
+    else if (whole)
         lit_frame(look, decision, settings, follows, now_ms);
+    else if (look->clear)
+        decision_take(decision, settings->window_ms, now_ms);
     /* Right after a frame, or that frame would be lost to the look. */
-    if (follows && now_ms - look->since_ms >= look->pause_ms)
+    if (look->state == LOOK_LIT && follows &&
+        now_ms - look->since_ms >= look->pause_ms)
         look->due = true;
 }

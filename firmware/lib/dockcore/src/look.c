@@ -9,7 +9,7 @@
 /* Decisions that come every ten seconds are averaged over a minute. */
 #define DARK_WINDOW_MS 60000
 /* Markers of a dark frame and of a lit one, where the lamps change nothing. */
-#define SAME_HUE (4 * METHOD_HUE_RANGE / 360)
+#define SAME_HUE (3 * METHOD_HUE_RANGE / 360)
 /* The water's hue and that of the lamps, where it may be theirs. */
 #define OWN_HUE (30 * METHOD_HUE_RANGE / 360)
 /* So long in a row frames may be odd before they are doubted. */
@@ -57,6 +57,19 @@ bool look_is_on(const look_t *look)
     return look->state == LOOK_DARK;
 }
 
+static look_seen_t seen_in(const decision_t *decision)
+{
+    return (look_seen_t){true, decision->background.meaningful,
+                         decision->background.value, decision->decided_hue};
+}
+
+/* Whether a frame without the lamps' light says what one with it says. */
+static bool agree(const look_seen_t *dark, const look_seen_t *lit)
+{
+    return dark->known && lit->known && dark->meaningful == lit->meaningful &&
+           hue_distance(dark->hue, lit->hue) <= SAME_HUE;
+}
+
 /* What decided up to here was perhaps the lamps' own light. */
 static void doubt(look_t *look, decision_t *decision)
 {
@@ -92,12 +105,11 @@ static void lit_frame(look_t *look, decision_t *decision,
                       const dock_settings_t *settings, bool follows,
                       uint32_t now_ms)
 {
-    const background_t *seen = &decision->background;
     const bool own = follows && looks_like_lamps(decision);
-    look->lit.known = true;
-    look->lit.meaningful = seen->meaningful;
-    look->lit.hue = decision->decided_hue;
-    look->lit.value = seen->value;
+    look->lit = seen_in(decision);
+    if (look->unlit.known && !agree(&look->unlit, &look->lit))
+        doubt(look, decision);
+    look->unlit.known = false;
     if (look->failed)
         after_failure(look, decision, settings, own, now_ms);
     const bool taken = (look->clear || !follows) &&
@@ -108,18 +120,11 @@ static void lit_frame(look_t *look, decision_t *decision,
         doubt(look, decision);
 }
 
-/* Whether a frame without the lamps' light says what one with it said. */
-static bool agrees(const look_t *look, const decision_t *decision)
-{
-    return look->lit.known &&
-           look->lit.meaningful == decision->background.meaningful &&
-           hue_distance(look->lit.hue, decision->decided_hue) <= SAME_HUE;
-}
-
 static void dark_frame(look_t *look, decision_t *decision,
                        const dock_settings_t *settings, uint32_t now_ms)
 {
-    if (agrees(look, decision))
+    const look_seen_t dark = seen_in(decision);
+    if (agree(&dark, &look->lit))
         look->clear = true;
     else
         doubt(look, decision);
@@ -137,6 +142,8 @@ void look_frame(look_t *look, decision_t *decision,
     if (look->state == LOOK_UNLIT || !decision->decided) {
         decision_take(decision, settings->window_ms, now_ms);
         look->plain_ms = now_ms;
+        look->unlit = seen_in(decision);
+        look->unlit.known = look->state == LOOK_UNLIT;
         return;
     }
     /* Else the lamps went out or on while it was exposed. */
@@ -145,7 +152,7 @@ void look_frame(look_t *look, decision_t *decision,
         dark_frame(look, decision, settings, now_ms);
     else if (whole)
         lit_frame(look, decision, settings, follows, now_ms);
-    else if (look->clear)
+    else if (look->clear && !look->unlit.known)
         decision_take(decision, settings->window_ms, now_ms);
     /* Right after a frame, or that frame would be lost to the look. */
     if (look->state == LOOK_LIT && follows &&

@@ -26,6 +26,13 @@ typedef enum {
     LOOK_DARK, /* they are out for a look */
 } look_state_t;
 
+/* What a frame by itself decides. */
+typedef struct {
+    bool known, meaningful;
+    uint8_t value; /* of the water */
+    uint16_t hue;  /* of the marker */
+} look_seen_t;
+
 typedef struct {
     look_state_t state;
     uint32_t since_ms; /* the state's first moment */
@@ -34,11 +41,8 @@ typedef struct {
     bool due;          /* the lamps go out at the next turn */
     bool failed;       /* the last look ended without its frame */
     bool clear;        /* frames in the lamps' light decide too */
-    struct {
-        bool known, meaningful;
-        uint16_t hue; /* of the marker, decided from it alone */
-        uint8_t value;
-    } lit;             /* the last frame in the lamps' light */
+    look_seen_t unlit; /* the last frame of LOOK_UNLIT, until one is lit */
+    look_seen_t lit;   /* the last frame in the lamps' light */
     uint32_t plain_ms; /* when one last looked otherwise than the lamps, and
                           like the water before */
 } look_t;

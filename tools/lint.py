@@ -118,6 +118,7 @@ def cppcheck() -> Outcome:
         f"--cppcheck-build-dir={CPPCHECK_CACHE.relative_to(ROOT)}",
         "-j2",
         "-Ifirmware/lib/dockcore/src",
+        "-Ifirmware/lib/wholeimage/src",
         f"-I{VENDOR.relative_to(ROOT)}",
         *files,
     )

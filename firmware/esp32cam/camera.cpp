@@ -62,6 +62,11 @@ camera_report_t Camera::step(const camera_order_t &order)
                             : report(CAMERA_NOTHING, nullptr);
 }
 
+int64_t camera_began_us(const camera_fb_t &frame)
+{
+    return int64_t{1000000} * frame.timestamp.tv_sec + frame.timestamp.tv_usec;
+}
+
 void Camera::release(const camera_report_t &report)
 {
     if (report.frame != nullptr)
@@ -70,9 +75,7 @@ void Camera::release(const camera_report_t &report)
 
 bool Camera::is_stale(const camera_fb_t &frame) const
 {
-    const int64_t began_us =
-        int64_t{1000000} * frame.timestamp.tv_sec + frame.timestamp.tv_usec;
-    return began_us < fresh_us;
+    return camera_began_us(frame) < fresh_us;
 }
 
 /* A frame that is not for the dock. */

@@ -52,6 +52,9 @@ struct camera_report_t {
     dock_camera_t camera;
 };
 
+/* When the sensor began to send it, by clock_us. */
+int64_t camera_began_us(const camera_fb_t &frame);
+
 class Camera
 {
   public:

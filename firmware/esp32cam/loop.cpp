@@ -3,6 +3,7 @@
 #include <esp_system.h>
 
 #include "clock.h"
+#include "last_hue.h"
 #include "mailbox.h"
 #include "port.h"
 #include "pwm.h"
@@ -22,6 +23,7 @@ void Loop::turn()
 {
     receive();
     camera();
+    rest();
     requests();
     leds();
     transmit();
@@ -61,7 +63,9 @@ void Loop::camera()
         return;
     dock_set_camera(dock, &report.camera);
     if (report.event == CAMERA_FRAME) {
-        const frame_t frame = frame_of(*report.frame);
+        frame_t frame = frame_of(*report.frame);
+        frame.age_ms =
+            exposure.age_ms(camera_began_us(*report.frame), clock_us());
         dock_frame(dock, &frame, clock_ms());
         watchdog_feed();
     } else if (report.event == CAMERA_FAULT) {
@@ -70,6 +74,7 @@ void Loop::camera()
     } else if (report.event == CAMERA_PAUSED) {
         paused();
     }
+    rest();
     mailbox_done();
 }
 
@@ -88,13 +93,18 @@ void Loop::save()
     mailbox_order(order);
 }
 
-void Loop::requests()
+/* Before the camera's task goes on after a frame, and for what a host wants. */
+void Loop::rest()
 {
     const uint32_t rest_ms = dock_rest_ms(dock);
-    if (rest_ms != order.rest_ms) {
-        order.rest_ms = rest_ms;
-        mailbox_order(order);
-    }
+    if (rest_ms == order.rest_ms)
+        return;
+    order.rest_ms = rest_ms;
+    mailbox_order(order);
+}
+
+void Loop::requests()
+{
     switch (dock_take_request(dock)) {
     case DOCK_REQUEST_NONE:
         return;
@@ -116,8 +126,9 @@ void Loop::requests()
 void Loop::leds()
 {
     uint16_t duty[3];
-    dock_led_duties(dock, duty);
+    dock_led_duties(dock, duty, clock_ms());
     pwm_set(duty, dock->settings.led.common_anode);
+    last_hue_keep(dock_hue(dock));
 }
 
 void Loop::transmit()

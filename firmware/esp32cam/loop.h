@@ -5,6 +5,7 @@
 
 #include "camera.h"
 #include "core.h"
+#include "exposure.h"
 
 enum {
     LOOP_WAIT_MS = 2, /* for the camera: what a byte waits at most */
@@ -31,6 +32,7 @@ class Loop
     void camera();
     void paused();
     void save();
+    void rest();
     void requests();
     void leds();
     void transmit();
@@ -38,6 +40,7 @@ class Loop
 
     dock_t *dock;
     camera_order_t order = {};
+    Exposure exposure;
     uint8_t out[LOOP_OUT] = {};
     size_t out_length = 0;
     size_t out_sent = 0;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core.h"
+#include "last_hue.h"
 #include "loop.h"
 #include "mailbox.h"
 #include "port.h"
@@ -80,6 +81,7 @@ void setup()
 
     dock_init(&dock, &settings);
     tell_board(stored);
+    dock_set_last_hue(&dock, last_hue());
 
     /* The camera while memory is in one piece: it needs 32 KB of it at once. */
     camera_order_t order = {};

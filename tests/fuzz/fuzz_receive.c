@@ -127,9 +127,9 @@ static void must_be_sound(void)
     MUST(dock_mend_settings(&dock.settings) == 0);
     MUST(dock.lamps.mode <= DOCK_LED_RAW);
     MUST(dock.lamps.hue < METHOD_HUE_RANGE);
-    MUST(dock.decision.marker_hue < METHOD_HUE_RANGE);
+    MUST(dock.decision.steady.shown < METHOD_HUE_RANGE);
     MUST(dock.decision.decided_hue < METHOD_HUE_RANGE);
-    dock_led_duties(&dock, duty);
+    dock_led_duties(&dock, duty, clock_ms);
     for (int i = 0; i < 3; i++)
         MUST(duty[i] <= LED_FULL);
     MUST(link->receiver.length <= RECEIVER_CAPACITY);
@@ -186,13 +186,13 @@ static void camera(void)
         for (size_t at = i; at < sizeof pixels; at += 3)
             pixels[at] = (uint8_t)(level ^ (at & kind));
     }
-    frame_t frame = {pixels, 12 * 9 * 3, 12, 9, FRAME_RGB888};
+    frame_t frame = {pixels, 12 * 9 * 3, 12, 9, FRAME_RGB888, 0};
     if (kind % 8 == 1)
         frame.length--;
     if (kind % 8 == 2)
-        frame = (frame_t){pixels, 200, 10, 10, FRAME_RGB565};
+        frame = (frame_t){pixels, 200, 10, 10, FRAME_RGB565, 0};
     if (kind % 8 == 4)
-        frame = (frame_t){pixels, sizeof pixels, 40, 30, FRAME_RGB888};
+        frame = (frame_t){pixels, sizeof pixels, 40, 30, FRAME_RGB888, 0};
     const uint32_t frames = dock.decision.frames;
     const bool injecting = dock.link.injection.state != INJECTION_OFF &&
                            clock_ms - dock.link.injection.heard_ms <= 3000;

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from chromadock.choices import MAPPINGS
 from chromadock.colour.hsv import hue_of_vector, rgb_from_hsv
-from chromadock.colour.marker import RollingHue, marker_hue
+from chromadock.colour.marker import RollingHue, SteadyHue, marker_hue
 from chromadock_firmware import ffi, lib
 
 HUE = st.integers(0, lib.METHOD_HUE_RANGE - 1)
@@ -46,6 +46,24 @@ def test_rolling_means_with_any_pace_and_any_clock(
     for step, hue in decisions:
         now_ms = (now_ms + step) % 2**32
         assert lib.rolling_add(state, hue, now_ms, window_ms) == rolling.add(hue, now_ms)
+
+
+@given(
+    start=st.integers(0, 2**32 - 1),
+    decisions=st.lists(
+        st.tuples(st.integers(-50, 1500), st.booleans(), HUE), min_size=1, max_size=150
+    ),
+)
+def test_decisions_of_both_kinds_with_any_pace_and_any_clock(
+    start: int, decisions: list[tuple[int, bool, int]]
+) -> None:
+    state = ffi.new("steady_t *")
+    lib.steady_init(state)
+    steady, now_ms = SteadyHue(), start
+    for step, meaningful, hue in decisions:
+        now_ms = (now_ms + step) % 2**32
+        lib.steady_add(state, meaningful, hue, lib.METHOD_WINDOW_MS, now_ms)
+        assert state.shown == steady.add(meaningful, hue, now_ms)
 
 
 @given(HUE, st.lists(st.integers(0, 2000), max_size=40))

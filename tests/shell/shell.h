@@ -8,6 +8,8 @@
 #include "../../firmware/esp32cam/backoff.cpp"
 #include "../../firmware/esp32cam/camera.cpp"
 #include "../../firmware/esp32cam/camera_power.cpp"
+#include "../../firmware/esp32cam/exposure.cpp"
+#include "../../firmware/esp32cam/last_hue.cpp"
 #include "../../firmware/esp32cam/lock_check.cpp"
 #include "../../firmware/esp32cam/loop.cpp"
 #include "../../firmware/esp32cam/mailbox.cpp"

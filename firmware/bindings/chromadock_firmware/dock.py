@@ -73,14 +73,25 @@ class Dock:
             self.stored = _STORED[lib.settings_from_blob(c, blob, len(blob))]
         self._buffer: Any = ffi.NULL
         lib.dock_init(self.c, c)
+        self._now_ms = 0
 
-    def frame(self, data: bytes | None, width: int, height: int, fmt: str, now_ms: int) -> None:
+    def frame(
+        self,
+        data: bytes | None,
+        width: int,
+        height: int,
+        fmt: str,
+        now_ms: int,
+        age_ms: int = 0,
+    ) -> None:
         """A camera frame (``fmt`` ``rgb565`` or ``rgb888``), or None: a camera fault.
 
+        The first of its light was gathered ``age_ms`` ago: 0 for a picture of one moment.
         A frame whose length does not match its size is counted and changes nothing.
         """
-        frame = ffi.NULL if data is None else c_frame(data, width, height, fmt)
+        frame = ffi.NULL if data is None else c_frame(data, width, height, fmt, age_ms)
         lib.dock_frame(self.c, frame, now_ms & 0xFFFFFFFF)
+        self._now_ms = now_ms
 
     def set_board(
         self, git_hash: bytes = b"", reset_reason: int = 0, capacity: int = lib.DOCK_IMAGE_BYTES
@@ -134,17 +145,33 @@ class Dock:
         lib.settings_to_blob(ffi.addressof(self.c.settings), blob)
         return bytes(ffi.buffer(blob))
 
+    def led_duties(self, now_ms: int) -> tuple[int, int, int]:
+        """PWM duties R, G, B, 0..LED_FULL, with correction, limit and polarity.
+
+        The LEDs are driven so from ``now_ms`` on: now and then they are dark for a frame.
+        """
+        duty = ffi.new("uint16_t[3]")
+        lib.dock_led_duties(self.c, duty, now_ms & 0xFFFFFFFF)
+        return duty[0], duty[1], duty[2]
+
     @property
     def duties(self) -> tuple[int, int, int]:
-        """PWM duties R, G, B, 0..LED_FULL, with correction, limit and polarity."""
-        duty = ffi.new("uint16_t[3]")
-        lib.dock_led_duties(self.c, duty)
-        return duty[0], duty[1], duty[2]
+        """``led_duties`` at the time of the last frame."""
+        return self.led_duties(self._now_ms)
+
+    @property
+    def looks(self) -> bool:
+        """Whether the LEDs are dark so that a frame is exposed without their light."""
+        return bool(lib.look_is_on(ffi.addressof(self.c.look)))
+
+    def set_last_hue(self, hue: int) -> None:
+        """The hue 0..1535 shown before a reset, for a dock whose camera gives no frame."""
+        lib.dock_set_last_hue(self.c, hue)
 
     @property
     def marker_hue(self) -> int:
         """Hue 0..1535 that the LEDs show: the rolling mean."""
-        return int(self.c.decision.marker_hue)
+        return int(lib.dock_hue(self.c))
 
     @property
     def frame_faults(self) -> int:

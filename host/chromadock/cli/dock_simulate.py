@@ -43,6 +43,10 @@ def simulate(
         ),
     ] = None,
     seed: Annotated[int, typer.Option(help="Of noise and corruption.")] = 0,
+    own_light: Annotated[
+        float,
+        typer.Option(help="What its camera sees of its lamps, share 0 .. 1 of full scale."),
+    ] = 0.0,
 ) -> None:
     """Run the dock's own firmware core in this process, behind a serial port.
 
@@ -50,7 +54,7 @@ def simulate(
     its link and its parameters are the board's own code.
 
     Not imitated: the sensor (settling, noise, what exposure, gain and white
-    balance do to a frame), LEDs that light the scene, the processor's speed, the
+    balance do to a frame), the processor's speed, the
     watchdog, brown-outs, flash wear, baud rates other than the default, DTR and
     RTS, which do not reset it.
     """
@@ -60,11 +64,13 @@ def simulate(
 
     if not 0 < fps <= _MOST_FPS:
         raise ChromadockError(f"--fps is {fps:g}: give frames a second, above 0 .. {_MOST_FPS:g}")
+    if not 0 <= own_light <= 1:
+        raise ChromadockError(f"--own-light is {own_light:g}: give a share, 0 .. 1, such as 0.01")
     faults = [parse_fault(text) for text in fault or []]
     camera = open_camera(source)
     port = None
     try:
-        dock = SimulatedDock(camera, fps, settings, faults, seed, CLOCK())
+        dock = SimulatedDock(camera, fps, settings, faults, seed, CLOCK(), own_light)
         port = PtyPort() if tcp is None else TcpPort(tcp)
         print(f"port: {port.url}", flush=True)
         serve(dock, port, Event())

@@ -12,6 +12,7 @@ from chromadock.link.rgb565 import HEIGHT, WIDTH
 from chromadock.simulated.camera import Camera
 from chromadock.simulated.damage import Damage
 from chromadock.simulated.faults import Fault
+from chromadock.simulated.own_light import RGB, OwnLight
 from chromadock.simulated.storage import Storage
 from chromadock.simulated.texts import DRIVER, POWER_ON, RESET_REASONS, SOFTWARE, boot_text
 
@@ -24,6 +25,8 @@ GRAB_TIMEOUT_S = 4.0
 SETTLED_EXPOSURE, SETTLED_GAIN = 300, 4
 SENSOR = 0x26
 """An OV2640."""
+EXPOSED = 0.8
+"""Share of a frame's period from the first of its light to the last of its rows."""
 _TEXT_PERIOD_S = 0.5
 _NOISE_BYTES = 256
 _CHUNK = 1024
@@ -44,6 +47,8 @@ class SimulatedDock:
         What goes wrong, and when.
     seed
         Of noise and damaged bytes: the same ones every time.
+    own_light
+        What the camera sees of the lamps, share 0..1 of its full scale.
 
     Raises
     ------
@@ -59,9 +64,12 @@ class SimulatedDock:
         faults: Sequence[Fault] = (),
         seed: int = 0,
         now_s: float = 0.0,
+        own_light: float = 0.0,
     ) -> None:
         self._camera = camera
         self._period_s = 1 / fps
+        self._own_light = OwnLight(own_light)
+        self._duties = (0, 0, 0)
         self._storage = Storage(settings)
         self._random = random.Random(seed)
         share = max((f.share for f in faults), default=0.0)
@@ -80,8 +88,16 @@ class SimulatedDock:
     @property
     def duties(self) -> tuple[int, int, int]:
         """PWM duties R, G, B as on the pins."""
-        r, g, b = self._core.duties
-        return int(r), int(g), int(b)
+        return self._duties
+
+    @property
+    def lamps(self) -> RGB:
+        """What the LEDs give, share of full power, R, G, B."""
+        from chromadock_firmware import lib
+
+        inverted = bool(self._core.c.settings.led.common_anode)
+        r, g, b = (d / lib.LED_FULL for d in self._duties)
+        return (1 - r, 1 - g, 1 - b) if inverted else (r, g, b)
 
     def next_due_s(self) -> float:
         """When ``step`` has something to do again, at the latest."""
@@ -105,6 +121,7 @@ class SimulatedDock:
             self._lock()
         while (request := self._core.take_request()) is not None:
             self._obey(request, now_s)
+        self._drive(now_s)
 
     def receive(self, data: bytes, now_s: float) -> None:
         """Bytes from the host."""
@@ -129,7 +146,11 @@ class SimulatedDock:
         self._boot_s = now_s
         self._ready_s = now_s + BOOT_S
         self._frame_due_s = self._ready_s
+        kept = self._core.marker_hue if reset == SOFTWARE else None
         self._core = _core(self._storage.load())
+        if kept is not None:
+            self._core.set_last_hue(kept)
+        self._drive(now_s)
         self._core.set_board(GIT_HASH, RESET_REASONS[reset])
         self._unlock(now_s)
 
@@ -146,12 +167,21 @@ class SimulatedDock:
 
     def _grab(self, now_s: float) -> None:
         lost = self._lasts("camera-lost", now_s)
-        data = None if lost or self._grab_fails else self._camera.frame()
+        exposed_s = EXPOSED * self._period_s
+        data = None
+        if not (lost or self._grab_fails):
+            data = self._own_light.exposed(self._camera.frame(), now_s - exposed_s, now_s)
         self._grab_fails = False
-        self._core.frame(data, WIDTH, HEIGHT, "rgb565", self._ms(now_s))
+        age_ms = round(1000 * exposed_s)
+        self._core.frame(data, WIDTH, HEIGHT, "rgb565", self._ms(now_s), age_ms)
+        self._drive(now_s)
         period = GRAB_TIMEOUT_S if lost else self._period_s
         # Late frames are left out, not caught up with.
         self._frame_due_s = max(self._frame_due_s + period, now_s)
+
+    def _drive(self, now_s: float) -> None:
+        self._duties = self._core.led_duties(self._ms(now_s))
+        self._own_light.drive(self.lamps, now_s)
 
     def _obey(self, request: str, now_s: float) -> None:
         if request == "save":

@@ -40,7 +40,7 @@ static void show(colour_t water, uint32_t now_ms)
 static void assert_duties(int red, int green, int blue)
 {
     uint16_t duty[3] = {9999, 9999, 9999};
-    dock_led_duties(&dock, duty);
+    dock_led_duties(&dock, duty, 0);
     TEST_ASSERT_EQUAL_UINT16(red, duty[0]);
     TEST_ASSERT_EQUAL_UINT16(green, duty[1]);
     TEST_ASSERT_EQUAL_UINT16(blue, duty[2]);
@@ -91,7 +91,7 @@ static void test_the_leds_follow_at_the_next_frame(void)
     show(blue_water, 0);
     show(green_water, 33); /* markers red and blue: magenta in the middle */
     TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.decided_hue);
-    TEST_ASSERT_EQUAL_UINT16(1280, dock.decision.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(1280, dock.decision.steady.shown);
     assert_duties(4096, 0, 4096);
 
     show(green_water, 2033);
@@ -106,9 +106,9 @@ static void test_the_window_is_that_of_the_settings(void)
     show(blue_water, 0);
 
     show(green_water, 99);
-    TEST_ASSERT_EQUAL_UINT16(1280, dock.decision.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(1280, dock.decision.steady.shown);
     show(green_water, 199);
-    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.steady.shown);
 }
 
 static void test_the_mapping_is_that_of_the_settings(void)
@@ -159,7 +159,7 @@ static void assert_refused(frame_t spoilt)
     assert_counters(1, 0, 1);
     assert_duties(4096, 0, 0);
     TEST_ASSERT_EQUAL_UINT16(0, dock.decision.decided_hue);
-    TEST_ASSERT_EQUAL_UINT8(1, dock.decision.rolling.count);
+    TEST_ASSERT_EQUAL_UINT8(1, dock.decision.steady.rolling.count);
 }
 
 static void test_a_frame_of_the_wrong_length_is_a_fault(void)

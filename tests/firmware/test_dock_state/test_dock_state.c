@@ -24,15 +24,15 @@ static void show(dock_t *dock, uint32_t frame_number)
     canvas_free_all();
 }
 
-static void assert_same_dock(const dock_t *expected, const dock_t *actual)
+static void assert_same_dock(dock_t *expected, dock_t *actual)
 {
     uint16_t a[3], b[3];
-    dock_led_duties(expected, a);
-    dock_led_duties(actual, b);
+    dock_led_duties(expected, a, 0);
+    dock_led_duties(actual, b, 0);
     TEST_ASSERT_EQUAL_UINT16(expected->decision.decided_hue,
                              actual->decision.decided_hue);
-    TEST_ASSERT_EQUAL_UINT16(expected->decision.marker_hue,
-                             actual->decision.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(expected->decision.steady.shown,
+                             actual->decision.steady.shown);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(a, b, 3);
 }
 
@@ -124,16 +124,16 @@ static void test_a_fresh_start_forgets_everything(void)
 
     dock_init(&first, &settings);
 
-    dock_led_duties(&first, duty);
+    dock_led_duties(&first, duty, 0);
     TEST_ASSERT_EQUAL_UINT16(0, duty[0]);
     TEST_ASSERT_EQUAL_UINT32(0, first.decision.frames);
     TEST_ASSERT_EQUAL_UINT32(0, first.camera_faults);
-    TEST_ASSERT_EQUAL_UINT8(0, first.decision.rolling.count);
+    TEST_ASSERT_EQUAL_UINT8(0, first.decision.steady.rolling.count);
 }
 
 static void test_a_run_equals_its_stages(void)
 {
-    static working_image_t image;
+    static whole_image_t image;
     const dock_settings_t settings = dock_default_settings();
     background_t background;
     rolling_t rolling;
@@ -142,20 +142,20 @@ static void test_a_run_equals_its_stages(void)
     rolling_init(&rolling);
     for (uint32_t i = 0; i < 100; i++) {
         const canvas_t canvas = water(i);
-        working_image_from_frame(&image, &canvas.frame);
-        working_image_smooth(&image);
-        background_from_image(&background, &image);
+        whole_image_smoothed(&image, &canvas.frame);
+        whole_image_background(&background, &image, 0);
         const uint16_t decided = marker_hue(&background, 0, 512);
         const uint16_t mean = rolling_add(&rolling, decided, 50 * i, 2000);
         led_duties(expected, mean, &settings.led);
 
         dock_frame(&first, &canvas.frame, 50 * i);
 
-        dock_led_duties(&first, duty);
+        dock_led_duties(&first, duty, 0);
         TEST_ASSERT_EQUAL_UINT16(decided, first.decision.decided_hue);
-        TEST_ASSERT_EQUAL_UINT16(mean, first.decision.marker_hue);
+        TEST_ASSERT_EQUAL_UINT16(mean, first.decision.steady.shown);
         TEST_ASSERT_EQUAL_UINT16_ARRAY(expected, duty, 3);
-        assert_same_image(&image, &first.decision.image);
+        TEST_ASSERT_EQUAL_MEMORY(&background, &first.decision.background,
+                                 sizeof background);
         canvas_free_all();
     }
 }

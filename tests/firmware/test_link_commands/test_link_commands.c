@@ -26,7 +26,7 @@ static void start_upright(void)
 static void assert_duties(int red, int green, int blue)
 {
     uint16_t duty[3];
-    dock_led_duties(&dock, duty);
+    dock_led_duties(&dock, duty, 0);
     TEST_ASSERT_EQUAL_UINT16(red, duty[0]);
     TEST_ASSERT_EQUAL_UINT16(green, duty[1]);
     TEST_ASSERT_EQUAL_UINT16(blue, duty[2]);

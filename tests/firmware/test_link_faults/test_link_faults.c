@@ -220,7 +220,7 @@ static void test_camera_frames_are_passed_over_while_a_host_injects(void)
 {
     inject_blue_then_camera_green();
     TEST_ASSERT_EQUAL_UINT32(1, dock.decision.frames);
-    TEST_ASSERT_EQUAL_UINT16(0, dock.decision.marker_hue);
+    TEST_ASSERT_EQUAL_UINT16(0, dock.decision.steady.shown);
 }
 
 static void test_the_camera_is_back_three_seconds_after_the_last_packet(void)

@@ -10,8 +10,12 @@ enum { PACKET = 253, MOST_BYTES = 60000 };
 
 static frame_t frame_of(const golden_frame_t *golden)
 {
-    return (frame_t){golden_pixels + golden->frame_at, golden->frame_bytes,
-                     golden->width, golden->height, golden->format};
+    return (frame_t){golden_pixels + golden->frame_at,
+                     golden->frame_bytes,
+                     golden->width,
+                     golden->height,
+                     golden->format,
+                     0};
 }
 
 static void test_injected_golden_frames_give_the_golden_colour(void)
@@ -96,7 +100,7 @@ static void test_a_lost_packet_costs_the_frame_and_says_so(void)
     tell_frame(&frame);
     TEST_ASSERT_EQUAL_UINT32(1, dock.decision.frames);
     TEST_ASSERT_EQUAL_UINT16(golden_frames[0].marker_hue,
-                             dock.decision.marker_hue);
+                             dock.decision.steady.shown);
 }
 
 static void test_packets_in_another_order_cost_the_frame(void)
@@ -117,7 +121,7 @@ static void test_duplicated_packets_cost_nothing(void)
         order[i] = i / 2;
     TEST_ASSERT_EQUAL_UINT32(1, decided_after(order, 304));
     TEST_ASSERT_EQUAL_UINT16(golden_frames[0].marker_hue,
-                             dock.decision.marker_hue);
+                             dock.decision.steady.shown);
     TEST_ASSERT_EQUAL_UINT32(0, dock.link.faults);
 }
 
@@ -159,7 +163,7 @@ static void assert_injection_refused(frame_t frame, const char *text)
 static void test_announcements_of_a_wrong_size_are_refused_and_counted(void)
 {
     static const uint8_t pixels[QQVGA_BYTES + 2];
-    frame_t frame = {pixels, QQVGA_BYTES, 160, 120, FRAME_RGB565};
+    frame_t frame = {pixels, QQVGA_BYTES, 160, 120, FRAME_RGB565, 0};
     link_start();
     frame.width = 161;
     assert_injection_refused(frame,

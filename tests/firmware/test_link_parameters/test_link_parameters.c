@@ -239,10 +239,10 @@ static void test_manual_mode_shows_the_hue_at_once(void)
     set("LED_ANODE", 0);
     set("LED_HUE", 120);
     set("LED_MODE", 1);
-    dock_led_duties(&dock, duty);
+    dock_led_duties(&dock, duty, 0);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(((uint16_t[]){0, 4096, 0}), duty, 3);
     set("LED_MODE", 0);
-    dock_led_duties(&dock, duty);
+    dock_led_duties(&dock, duty, 0);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(((uint16_t[]){0, 0, 0}), duty, 3);
 }
 

@@ -138,6 +138,7 @@ static uint16_t rate_at(uint32_t period_ms)
     for (uint32_t i = 0; i < 60; i++)
         dock_frame(&dock, &canvas.frame, UINT32_MAX - 5000 + i * period_ms);
     canvas_free_all();
+    clock_ms = UINT32_MAX - 5000 + 59 * period_ms;
     return status_now().frame_rate_dhz;
 }
 

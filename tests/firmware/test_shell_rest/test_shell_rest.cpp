@@ -42,8 +42,8 @@ static void test_decisions_come_at_the_interval_that_is_set(void)
 
     run_for(60000);
 
-    /* Waking takes some frames more. */
-    TEST_ASSERT_INT_WITHIN(1, 11, dock.decision.frames - frames);
+    /* Waking takes some frames more, and a look at the dark one. */
+    TEST_ASSERT_INT_WITHIN(2, 12, dock.decision.frames - frames);
     TEST_ASSERT_EQUAL_UINT32(0, dock.camera_faults);
 }
 
@@ -231,6 +231,26 @@ static void test_a_sensor_that_does_not_wake_is_power_cycled_at_full_speed(void)
     }
 }
 
+/* The lamps go out after a frame, and the next one has to come at once. */
+static void test_a_look_at_the_dark_is_not_slept_through(void)
+{
+    start_resting_dock(5000);
+    int looks = 0, failures = 0;
+    const int64_t began = now_ms();
+
+    while (now_ms() < began + 300000) {
+        const bool dark = look_is_on(&dock.look);
+        turn_both();
+        if (!dark || look_is_on(&dock.look))
+            continue;
+        ++looks;
+        failures += dock.look.failed;
+    }
+
+    TEST_ASSERT_GREATER_OR_EQUAL(3, looks);
+    TEST_ASSERT_EQUAL_INT(0, failures);
+}
+
 static void test_the_watchdog_is_fed_through_the_longest_rests(void)
 {
     start_resting_dock(10000);
@@ -261,6 +281,7 @@ static void run_tests(void)
     RUN_TEST(test_a_snapshot_does_not_wait_for_the_next_decision);
     RUN_TEST(test_settings_are_saved_and_the_chip_restarts_from_a_rest);
     RUN_TEST(test_a_sensor_that_does_not_wake_is_power_cycled_at_full_speed);
+    RUN_TEST(test_a_look_at_the_dark_is_not_slept_through);
     RUN_TEST(test_the_watchdog_is_fed_through_the_longest_rests);
 }
 

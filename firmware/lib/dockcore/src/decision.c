@@ -5,10 +5,17 @@
 #include "counter.h"
 #include "marker.h"
 
-void decision_init(decision_t *decision)
+/* In dim water, where decisions come of frames that the lamps did not light. */
+#define DIM_HOLD_MS 30000
+/* How far a value may be from the one before, and a hue from the one shown. */
+#define LIKE_VALUE(value) (4 + (value) / 4)
+#define LIKE_HUE (15 * METHOD_HUE_RANGE / 360)
+
+void decision_init(decision_t *decision, uint16_t hue)
 {
     memset(decision, 0, sizeof *decision);
-    rolling_init(&decision->rolling);
+    steady_init(&decision->steady);
+    steady_show(&decision->steady, hue);
 }
 
 /* Keeps the mean over about the last eight frames. */
@@ -27,8 +34,8 @@ static void measure_rate(decision_t *decision, uint32_t now_ms)
     decision->last_frame_ms = now_ms;
 }
 
-bool decision_frame(decision_t *decision, const frame_t *frame,
-                    const dock_settings_t *settings, uint32_t now_ms)
+bool decision_see(decision_t *decision, const frame_t *frame,
+                  const dock_settings_t *settings, uint32_t now_ms)
 {
     decision->refused = !frame_is_valid(frame);
     if (decision->refused) {
@@ -37,14 +44,69 @@ bool decision_frame(decision_t *decision, const frame_t *frame,
     }
     measure_rate(decision, now_ms);
     count(&decision->frames);
-    working_image_from_frame(&decision->image, frame);
-    working_image_smooth(&decision->image);
-    background_from_image(&decision->background, &decision->image);
+    smoothed_open(&decision->smoothed, frame);
+    background_from_rows(&decision->background, smoothed_rows,
+                         &decision->smoothed, decision->background.bin);
     decision->decided_hue = marker_hue(&decision->background, settings->mapping,
                                        settings->fallback_hue);
-    decision->marker_hue = rolling_add(
-        &decision->rolling, decision->decided_hue, now_ms, settings->window_ms);
+    return true;
+}
+
+bool decision_is_dim(const decision_t *decision)
+{
+    return decision->decided && decision->water_value < DECISION_DIM_VALUE;
+}
+
+/* Whether what was seen goes with what was taken before. */
+static bool is_like(const decision_t *decision)
+{
+    const background_t *seen = &decision->background;
+    if (!decision->decided || seen->meaningful != decision->steady.meaningful)
+        return false;
+    if (!decision_is_dim(decision) || !seen->meaningful)
+        return true;
+    const int brighter = seen->value - decision->water_value;
+    const int most = LIKE_VALUE(decision->water_value);
+    return brighter <= most && -brighter <= most &&
+           hue_distance(decision->decided_hue, decision->steady.shown) <=
+               LIKE_HUE;
+}
+
+static void take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
+{
+    decision->water_hue = decision->background.hue;
+    decision->water_value = decision->background.value;
     decision->decided = true;
+    steady_take(&decision->steady, decision->background.meaningful,
+                decision->decided_hue, window_ms, now_ms);
+}
+
+bool decision_take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
+{
+    const uint32_t hold_ms =
+        decision_is_dim(decision) ? DIM_HOLD_MS : METHOD_HOLD_MS;
+    if (!steady_takes(&decision->steady, is_like(decision), hold_ms, now_ms))
+        return false;
+    take(decision, window_ms, now_ms);
+    return true;
+}
+
+void decision_take_none(decision_t *decision, const dock_settings_t *settings,
+                        uint32_t window_ms, uint32_t now_ms)
+{
+    decision->background.meaningful = false;
+    decision->decided_hue = settings->fallback_hue;
+    decision_take(decision, window_ms, now_ms);
+}
+
+bool decision_frame(decision_t *decision, const frame_t *frame,
+                    const dock_settings_t *settings, uint32_t now_ms)
+{
+    if (!decision_see(decision, frame, settings, now_ms))
+        return false;
+    steady_takes(&decision->steady, is_like(decision), 0, now_ms);
+    take(decision, settings->window_ms, now_ms);
+    steady_let_go(&decision->steady);
     return true;
 }
 
@@ -53,9 +115,37 @@ void decision_refuse(decision_t *decision)
     decision->refused = true;
 }
 
-uint16_t decision_rate_dhz(const decision_t *decision)
+void decision_forget(decision_t *decision)
 {
-    if (decision->frame_period_q8 == 0)
+    steady_show(&decision->steady, decision->steady.shown);
+}
+
+void decision_follow(decision_t *decision, const dock_settings_t *before,
+                     const dock_settings_t *now)
+{
+    if (before->mapping == now->mapping &&
+        before->fallback_hue == now->fallback_hue)
+        return;
+    if (!decision->decided) {
+        if (decision->steady.shown == before->fallback_hue)
+            steady_show(&decision->steady, now->fallback_hue);
+        return;
+    }
+    const background_t water = {.hue = decision->water_hue,
+                                .meaningful = decision->steady.meaningful};
+    steady_show(&decision->steady,
+                marker_hue(&water, now->mapping, now->fallback_hue));
+}
+
+bool decision_is_stale(const decision_t *decision, uint32_t now_ms)
+{
+    return decision->frames == 0 ||
+           now_ms - decision->last_frame_ms >= DECISION_WAIT_MS;
+}
+
+uint16_t decision_rate_dhz(const decision_t *decision, uint32_t now_ms)
+{
+    if (decision->frame_period_q8 == 0 || decision_is_stale(decision, now_ms))
         return 0;
     const uint32_t rate = UINT32_C(10000) * 256 / decision->frame_period_q8;
     return (uint16_t)(rate < UINT16_MAX ? rate : UINT16_MAX);

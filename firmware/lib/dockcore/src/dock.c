@@ -10,7 +10,8 @@ void dock_init(dock_t *dock, const dock_settings_t *settings)
     memset(dock, 0, sizeof *dock);
     dock->settings = *settings;
     dock_mend_settings(&dock->settings);
-    decision_init(&dock->decision);
+    decision_init(&dock->decision, dock->settings.fallback_hue);
+    look_init(&dock->look);
     lamps_init(&dock->lamps, &dock->settings);
 }
 
@@ -46,6 +47,17 @@ void dock_set_camera(dock_t *dock, const dock_camera_t *camera)
     dock->camera = *camera;
 }
 
+void dock_set_last_hue(dock_t *dock, uint16_t hue)
+{
+    if (!dock->decision.decided && hue < METHOD_HUE_RANGE)
+        decision_init(&dock->decision, hue);
+}
+
+uint16_t dock_hue(const dock_t *dock)
+{
+    return dock->decision.steady.shown;
+}
+
 static void camera_fault(dock_t *dock)
 {
     count(&dock->camera_faults);
@@ -58,6 +70,7 @@ static void camera_fault(dock_t *dock)
 void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms)
 {
     const bool injecting = link_injection_lasts(&dock->link, now_ms);
+    lamps_turn(&dock->lamps, now_ms);
     if (frame == NULL || frame->bytes == NULL) {
         camera_fault(dock);
         return;
@@ -67,8 +80,12 @@ void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms)
     dock->camera_lost = false;
     if (injecting)
         return;
-    if (decision_frame(&dock->decision, frame, &dock->settings, now_ms))
-        link_take_snapshot(dock, frame);
+    if (!decision_see(&dock->decision, frame, &dock->settings, now_ms))
+        return;
+    look_frame(&dock->look, &dock->decision, &dock->settings,
+               lamps_follow_water(&dock->lamps), now_ms - frame->age_ms,
+               now_ms);
+    link_take_snapshot(dock, frame);
 }
 
 void dock_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
@@ -90,7 +107,8 @@ dock_request_t dock_take_request(dock_t *dock)
 
 uint32_t dock_rest_ms(const dock_t *dock)
 {
-    const bool wanted = dock->link.snapshot.state == SNAPSHOT_WANTED;
+    const bool wanted =
+        dock->link.snapshot.state == SNAPSHOT_WANTED || look_waits(&dock->look);
     return dock->decision.decided && !wanted ? dock->settings.decision_ms : 0;
 }
 
@@ -105,7 +123,15 @@ void dock_saved(dock_t *dock, bool written)
         link_answer_save(&dock->link, written);
 }
 
-void dock_led_duties(const dock_t *dock, uint16_t duty[3])
+void dock_led_duties(dock_t *dock, uint16_t duty[3], uint32_t now_ms)
 {
-    lamps_duties(&dock->lamps, &dock->decision, &dock->settings.led, duty);
+    lamps_turn(&dock->lamps, now_ms);
+    const look_lamps_t lamps = {lamps_are_lit(&dock->lamps, &dock->decision),
+                                lamps_follow_water(&dock->lamps) &&
+                                    !link_is_injecting(&dock->link)};
+    look_turn(&dock->look, lamps, now_ms);
+    if (look_is_on(&dock->look))
+        led_dark(duty, &dock->settings.led);
+    else
+        lamps_duties(&dock->lamps, &dock->decision, &dock->settings.led, duty);
 }

@@ -1,13 +1,15 @@
 /* The dock's state.  Each part has one owner, the file of its name, which alone
  * writes it; the others call the owner or read.  Calls run one way:
  *
- *   dock.c -> link.c -> link_*.c -> decision, lamps, requests, settings */
+ *   dock.c -> link.c -> link_*.c -> look, decision, lamps, requests,
+ *   settings */
 #ifndef DOCK_STATE_H
 #define DOCK_STATE_H
 
 #include "decision.h"
 #include "lamps.h"
 #include "link.h"
+#include "look.h"
 #include "requests.h"
 #include "settings.h"
 
@@ -44,6 +46,7 @@ typedef struct {
     uint32_t camera_faults;   /* dock.c: times that the camera gave no frame */
     bool camera_lost;         /* dock.c: whether it gave none the last time */
     decision_t decision;
+    look_t look;
     lamps_t lamps;
     requests_t requests;
     link_t link;

@@ -40,11 +40,32 @@ void lamps_show_raw(lamps_t *lamps, const uint8_t rgb[3])
     memcpy(lamps->raw, rgb, sizeof lamps->raw);
 }
 
+void lamps_turn(lamps_t *lamps, uint32_t now_ms)
+{
+    if (!lamps->begun)
+        lamps->since_ms = now_ms;
+    lamps->begun = true;
+    if (now_ms - lamps->since_ms >= DECISION_WAIT_MS)
+        lamps->overdue = true;
+}
+
+bool lamps_are_lit(const lamps_t *lamps, const decision_t *decision)
+{
+    return lamps->mode != DOCK_LED_AUTO || decision->decided || lamps->overdue;
+}
+
+bool lamps_follow_water(const lamps_t *lamps)
+{
+    return lamps->mode == DOCK_LED_AUTO;
+}
+
+/* As bright as the limit allows where the water is not known. */
 static void show_marker(const decision_t *decision, const led_settings_t *led,
                         uint16_t duty[3])
 {
-    const led_settings_t dimmed = led_dimmed(led, decision->background.value);
-    led_duties(duty, decision->marker_hue, &dimmed);
+    const uint8_t value = decision->decided ? decision->water_value : 255;
+    const led_settings_t dimmed = led_dimmed(led, value);
+    led_duties(duty, decision->steady.shown, &dimmed);
 }
 
 void lamps_duties(const lamps_t *lamps, const decision_t *decision,
@@ -54,7 +75,7 @@ void lamps_duties(const lamps_t *lamps, const decision_t *decision,
         led_raw_duties(duty, lamps->raw, led);
     else if (lamps->mode == DOCK_LED_HUE)
         led_duties(duty, lamps->hue, led);
-    else if (decision->decided)
+    else if (lamps_are_lit(lamps, decision))
         show_marker(decision, led, duty);
     else
         led_dark(duty, led);

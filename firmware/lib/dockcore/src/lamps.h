@@ -4,15 +4,19 @@
 #ifndef LAMPS_H
 #define LAMPS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "decision.h"
 #include "settings.h"
 
 typedef struct {
-    uint8_t mode;   /* DOCK_LED_AUTO, _HUE, _RAW of chromadock.xml */
-    uint16_t hue;   /* shown in mode DOCK_LED_HUE */
-    uint8_t raw[3]; /* R G B, shown in mode DOCK_LED_RAW */
+    bool begun;        /* whether lamps_turn was called yet */
+    bool overdue;      /* no decision came in time: show a hue all the same */
+    uint32_t since_ms; /* when lamps_turn was first called */
+    uint8_t mode;      /* DOCK_LED_AUTO, _HUE, _RAW of chromadock.xml */
+    uint16_t hue;      /* shown in mode DOCK_LED_HUE */
+    uint8_t raw[3];    /* R G B, shown in mode DOCK_LED_RAW */
 } lamps_t;
 
 /* Starts as the settings say. */
@@ -27,8 +31,19 @@ void lamps_show_marker(lamps_t *lamps);
 void lamps_show_hue(lamps_t *lamps, uint16_t hue);
 void lamps_show_raw(lamps_t *lamps, const uint8_t rgb[3]);
 
-/* PWM duties R, G, B, 0..LED_FULL, with correction, limit and polarity.  Dark
- * where the marker's hue is wanted before the first decision. */
+/* To be called with every frame and fault and before the lamps are driven, from
+ * the start on: sees that a dock without a decision
+ * does not stay dark for longer than DECISION_WAIT_MS. */
+void lamps_turn(lamps_t *lamps, uint32_t now_ms);
+
+/* Whether they show something: not before the first decision, where it is the
+ * marker's hue that is wanted, and it is not overdue. */
+bool lamps_are_lit(const lamps_t *lamps, const decision_t *decision);
+
+/* Whether what they show follows the water. */
+bool lamps_follow_water(const lamps_t *lamps);
+
+/* PWM duties R, G, B, 0..LED_FULL, with correction, limit and polarity. */
 void lamps_duties(const lamps_t *lamps, const decision_t *decision,
                   const led_settings_t *led, uint16_t duty[3]);
 

@@ -19,7 +19,7 @@ static frame_t injected_frame(const dock_t *dock, const link_image_t *image)
     frame_format_t format;
     format_of_type(image->type, &format);
     return (frame_t){dock->board.buffer, image->size, image->width,
-                     image->height, format};
+                     image->height,      format,      0};
 }
 
 bool link_is_injecting(const link_t *link)

@@ -98,6 +98,7 @@ static void settings_changed(dock_t *dock, const dock_settings_t *before)
     if (!same_camera(&before->camera, &dock->settings.camera))
         requests_camera(&dock->requests);
     lamps_follow(&dock->lamps, before, &dock->settings);
+    decision_follow(&dock->decision, before, &dock->settings);
 }
 
 void link_reset_parameters(dock_t *dock)

@@ -5,8 +5,8 @@
 
 #define HEARTBEAT_MS 1000
 
-/* The bits of DOCK_FAULT that are wrong now; an unlocked camera is none that
- * the heartbeat would tell of. */
+/* The bits of DOCK_FAULT that are wrong now; an unlocked camera and the
+ * dock's own light are none that the heartbeat would tell of. */
 static uint16_t faults(const dock_t *dock)
 {
     const dock_stored_t stored = dock->board.settings;
@@ -68,18 +68,21 @@ static void fill_status(const dock_t *dock, uint32_t now_ms,
     status->faults = faults(dock);
     if (dock->settings.camera.lock != 0 && !dock->camera.locked)
         status->faults |= DOCK_FAULT_UNLOCKED;
-    status->background_hue = b->meaningful ? b->hue : UINT16_MAX;
+    if (!dock->look.clear)
+        status->faults |= DOCK_FAULT_OWN_LIGHT;
+    const bool stale = decision_is_stale(decision, now_ms);
+    status->background_hue = b->meaningful && !stale ? b->hue : UINT16_MAX;
     status->decided_hue = decision->decided_hue;
-    status->marker_hue = decision->marker_hue;
+    status->marker_hue = decision->steady.shown;
     uint16_t duty[3]; /* the message's own array may be unaligned */
     lamps_duties(&dock->lamps, decision, &dock->settings.led, duty);
     memcpy(status->duty, duty, sizeof duty);
-    status->frame_rate_dhz = decision_rate_dhz(decision);
+    status->frame_rate_dhz = decision_rate_dhz(decision, now_ms);
     status->exposure = dock->camera.exposure;
     status->gain = dock->camera.gain;
     put_rgb(status->background_rgb,
             rgb_from_hsv(b->hue, b->saturation, b->value));
-    status->confidence = b->confidence;
+    status->confidence = stale ? 0 : b->confidence;
     status->led_mode = dock->lamps.mode;
     status->reset_reason = dock->board.reset_reason;
     status->sensor = dock->camera.sensor;

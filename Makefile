@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo results test hil soak bench fuzz lint format generate contrast clean setup-demo setup-bench
+.PHONY: help setup demo results test hil soak night bench fuzz lint format generate contrast clean setup-demo setup-bench
 
 help: ## List these targets
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' Makefile | expand -t 12
@@ -32,6 +32,9 @@ soak: setup ## A minute of an RTSP camera, 20 kills of a recording, ten minutes 
 	@CHROMADOCK_STREAM_S=$(or $(SOAK_SECONDS),60) $(VENV)/python -m pytest -q -s tests/host/test_streams.py -k behind
 	@CHROMADOCK_KILLS=20 $(VENV)/python -m pytest -q tests/host/test_recording.py -k kill
 	@$(VENV)/python tools/soak.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
+
+night: setup ## Nights of twelve hours of a dock that sees its own lamps, in fast time; HOURS=1 for a short run
+	@$(VENV)/python tools/night.py $(if $(HOURS),--hours=$(HOURS))
 
 setup-bench:
 	@$(PYTHON) tools/setup bench

@@ -180,6 +180,60 @@ def test_a_lost_camera_leaves_the_colour_and_the_link_as_they_were():
     assert led_limit(bench) == 255
 
 
+def dark_picture(folder):
+    file = folder / "night.png"
+    cv2.imwrite(str(file), np.zeros((HEIGHT, WIDTH, 3), np.uint8))
+    return str(file)
+
+
+@pytest.mark.parametrize("own_light", [0.003, 0.01, 0.05])
+def test_at_night_it_does_not_follow_its_own_light_and_says_so(tmp_path, own_light):
+    bench = Bench(source=dark_picture(tmp_path), own_light=own_light).run(30)
+    since = len(bench.all("DOCK_STATUS"))
+    bench.run(60)
+    assert {s.marker_hue for s in bench.all("DOCK_STATUS")[since:]} == {512}
+    assert bench.status().faults == dialect.DOCK_FAULT_OWN_LIGHT
+
+
+def test_its_leds_go_out_for_a_frame_now_and_then_and_never_for_long(tmp_path):
+    bench = Bench(source=dark_picture(tmp_path), own_light=0.05).run(1)
+    dark, longest_s, out_s = None, 0.0, 0.0
+    for _ in range(12_000):
+        bench.run(0.005, step_s=0.005)
+        if bench.dock.lamps == (0, 0, 0):
+            dark = bench.now_s if dark is None else dark
+        elif dark is not None:
+            longest_s = max(longest_s, bench.now_s - dark)
+            out_s, dark = out_s + bench.now_s - dark, None
+    assert 0.05 < longest_s < 0.2
+    assert 0 < out_s <= 0.02 * 60
+
+
+def test_without_own_light_all_frames_decide(tmp_path):
+    bench = Bench(own_light=0.0).run(90)
+    assert bench.status().faults == 0
+
+
+def test_a_camera_lost_from_the_start_leaves_the_fallback_after_15_seconds():
+    bench = Bench("camera-lost@0s").run(14)
+    assert bench.dock.lamps == (0, 0, 0)
+    bench.run(3)
+    assert bench.dock.lamps == (0, 1, 0)
+    assert bench.status().frame_rate_dhz == bench.status().confidence == 0
+
+
+def test_the_hue_comes_back_after_a_reboot_but_not_after_a_loss_of_power():
+    for restart, lamps in ((REBOOT, "before"), (None, (0, 1, 0))):
+        faults = ["camera-lost@2s"] + ([] if restart else ["reboot@3s"])
+        bench = Bench(*faults).run(1.5)
+        before = bench.dock.lamps
+        bench.run(1)
+        if restart:
+            bench.send(restart)
+        bench.run(25)
+        assert bench.dock.lamps == (before if lamps == "before" else lamps)
+
+
 def test_the_reboot_fault_starts_it_anew():
     bench = Bench("reboot@3s").run(4)
     assert bench.bytes.count(b"rst:0x1 (POWERON_RESET)") == 2

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "fixture.h"
 #include "link_fixture.h"
 #include "suite.h"
 
@@ -246,8 +247,53 @@ static void test_manual_mode_shows_the_hue_at_once(void)
     TEST_ASSERT_EQUAL_UINT16_ARRAY(((uint16_t[]){0, 0, 0}), duty, 3);
 }
 
+static void show(colour_t water, uint32_t now_ms)
+{
+    const canvas_t canvas = canvas_of(FRAME_RGB888, 4, 3, water);
+    dock_frame(&dock, &canvas.frame, now_ms);
+    canvas_free_all();
+}
+
+static void test_another_mapping_shows_its_hue_at_once_and_nothing_between(void)
+{
+    link_start();
+    for (uint32_t i = 0; i < 30; i++)
+        show((colour_t){0, 0, 200}, 100 * i);
+    TEST_ASSERT_EQUAL_UINT16(0, dock_hue(&dock));
+
+    set("MAPPING", METHOD_MAPPING_COMPLEMENT);
+
+    TEST_ASSERT_EQUAL_UINT16(256, dock_hue(&dock));
+    for (uint32_t i = 30; i < 60; i++) {
+        show((colour_t){0, 0, 200}, 100 * i);
+        TEST_ASSERT_EQUAL_UINT16(256, dock_hue(&dock));
+    }
+}
+
+static void test_another_fallback_is_shown_at_once_and_nothing_between(void)
+{
+    link_start();
+    for (uint32_t i = 0; i < 30; i++)
+        show((colour_t){90, 90, 90}, 100 * i);
+    set("FALLBACK_HUE", 240);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock_hue(&dock));
+    show((colour_t){90, 90, 90}, 3000);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock_hue(&dock));
+}
+
+static void test_a_fallback_set_before_the_first_frame_is_the_one_shown(void)
+{
+    link_start();
+    set("FALLBACK_HUE", 240);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock_hue(&dock));
+}
+
 static void run_tests(void)
 {
+    RUN_TEST(test_another_mapping_shows_its_hue_at_once_and_nothing_between);
+    RUN_TEST(test_another_fallback_is_shown_at_once_and_nothing_between);
+    RUN_TEST(test_a_fallback_set_before_the_first_frame_is_the_one_shown);
+
     RUN_TEST(test_the_list_is_each_parameter_once_in_order);
     RUN_TEST(test_two_list_requests_at_once_are_answered_once);
     RUN_TEST(test_a_list_request_in_the_middle_starts_anew);

@@ -232,8 +232,45 @@ static void test_a_buffer_too_small_for_anything_stays_empty(void)
     assert_all();
 }
 
+static void test_a_camera_that_died_has_no_rate_and_no_confidence(void)
+{
+    const canvas_t canvas =
+        canvas_of(FRAME_RGB888, 4, 3, (colour_t){0, 0, 200});
+    link_start();
+    for (clock_ms = 0; clock_ms < 5000; clock_ms += 100)
+        dock_frame(&dock, &canvas.frame, clock_ms);
+    clock_ms = 4900 + 14999;
+    mavlink_dock_status_t status = status_now();
+    TEST_ASSERT_EQUAL_UINT16(100, status.frame_rate_dhz);
+    TEST_ASSERT_EQUAL_UINT8(255, status.confidence);
+
+    clock_ms = 4900 + 15000;
+    status = status_now();
+    TEST_ASSERT_EQUAL_UINT16(0, status.frame_rate_dhz);
+    TEST_ASSERT_EQUAL_UINT8(0, status.confidence);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, status.background_hue);
+    TEST_ASSERT_EQUAL_UINT16(0, status.marker_hue); /* it is shown still */
+}
+
+static void test_own_light_is_a_fault_but_no_critical_one(void)
+{
+    link_start();
+    dock.look.clear = false;
+    TEST_ASSERT_EQUAL_UINT16(DOCK_FAULT_OWN_LIGHT, status_now().faults);
+    hear();
+    clock_ms += 1000;
+    hear();
+    mavlink_heartbeat_t heartbeat;
+    mavlink_msg_heartbeat_decode(heard(MAVLINK_MSG_ID_HEARTBEAT, 0),
+                                 &heartbeat);
+    TEST_ASSERT_EQUAL_UINT8(MAV_STATE_ACTIVE, heartbeat.system_status);
+}
+
 static void run_tests(void)
 {
+    RUN_TEST(test_a_camera_that_died_has_no_rate_and_no_confidence);
+    RUN_TEST(test_own_light_is_a_fault_but_no_critical_one);
+
     RUN_TEST(test_it_starts_with_a_heartbeat_a_text_and_a_status);
     RUN_TEST(test_the_heartbeat_is_what_ground_stations_expect);
     RUN_TEST(test_a_fault_shows_in_the_heartbeat);

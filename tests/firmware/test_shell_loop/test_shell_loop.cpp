@@ -87,6 +87,97 @@ static void test_the_leds_keep_their_colour_while_the_camera_is_away(void)
     TEST_ASSERT_EQUAL_UINT32(4096, board.duty[2]);
 }
 
+static void test_a_dock_whose_camera_never_starts_lights_up(void)
+{
+    board_reset();
+    last_hue_keep(UINT16_MAX);
+    board.init_always = ESP_ERR_NOT_FOUND;
+    start_dock();
+    run_for(14000);
+    TEST_ASSERT_EQUAL_UINT32(0, board.duty[1]);
+
+    run_for(2000);
+
+    TEST_ASSERT_EQUAL_UINT32(4096, board.duty[1]); /* the fallback */
+}
+
+static void test_the_hue_is_kept_over_a_reset(void)
+{
+    start_fresh_dock();
+    run_to_first_frame();
+    TEST_ASSERT_EQUAL_UINT16(1024, last_hue());
+
+    board_reset();
+    board.init_always = ESP_ERR_NOT_FOUND;
+    start_dock();
+    run_for(16000);
+
+    TEST_ASSERT_EQUAL_UINT32(0, board.duty[1]);
+    TEST_ASSERT_EQUAL_UINT32(4096, board.duty[2]);
+}
+
+static void test_memory_without_a_hue_after_power_on_has_none(void)
+{
+    last_hue_keep(77);
+    TEST_ASSERT_EQUAL_UINT16(77, last_hue());
+    kept[0] = 78;
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, last_hue());
+    kept[0] = kept[1] = 0;
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, last_hue());
+}
+
+static void test_the_age_of_a_frame_reaches_back_a_period_before_it_began(void)
+{
+    Exposure exposure;
+    TEST_ASSERT_GREATER_THAN(60000, exposure.age_ms(1000000, 1072000));
+    TEST_ASSERT_EQUAL_UINT32(153, exposure.age_ms(1080000, 1152000));
+    /* One is missed, one comes late to the dock. */
+    TEST_ASSERT_EQUAL_UINT32(153, exposure.age_ms(1240000, 1312000));
+    TEST_ASSERT_EQUAL_UINT32(181, exposure.age_ms(1320000, 1420000));
+}
+
+static void test_a_camera_that_becomes_slower_has_its_new_period(void)
+{
+    Exposure exposure;
+    for (int64_t us = 0; us < 1000000; us += 80000)
+        exposure.age_ms(us, us + 72000);
+    uint32_t age = 0;
+    for (int64_t us = 1000000; us < 2600000; us += 160000)
+        age = exposure.age_ms(us, us + 144000);
+    TEST_ASSERT_EQUAL_UINT32(305, age);
+}
+
+static bool is_dark()
+{
+    return board.duty[0] == 0 && board.duty[1] == 0 && board.duty[2] == 0;
+}
+
+static void test_the_lamps_go_out_for_a_look_and_come_back_in_time(void)
+{
+    start_fresh_dock();
+    board.frame_ms = 80;
+    board.frame_age_us = 72000;
+    run_to_first_frame();
+    int64_t dark_since = 0, longest = 0;
+    int looks = 0;
+    for (const int64_t end = now_ms() + 60000; now_ms() < end;) {
+        board.while_waiting = loop;
+        turn_both();
+        if (is_dark() && dark_since == 0)
+            dark_since = now_ms();
+        if (!is_dark() && dark_since != 0) {
+            looks++;
+            if (now_ms() - dark_since > longest)
+                longest = now_ms() - dark_since;
+            dark_since = 0;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(1, looks);
+    TEST_ASSERT_GREATER_OR_EQUAL(80, longest);
+    TEST_ASSERT_LESS_THAN(200, longest);
+    TEST_ASSERT_TRUE(dock.look.clear);
+}
+
 static void test_the_dock_is_told_the_cameras_values(void)
 {
     start_fresh_dock();
@@ -449,6 +540,12 @@ static void run_tests(void)
     RUN_TEST(test_settling_does_not_feed_it_and_stays_within_its_time);
     RUN_TEST(test_a_frame_lights_the_leds_in_the_same_turn);
     RUN_TEST(test_the_leds_keep_their_colour_while_the_camera_is_away);
+    RUN_TEST(test_a_dock_whose_camera_never_starts_lights_up);
+    RUN_TEST(test_the_hue_is_kept_over_a_reset);
+    RUN_TEST(test_memory_without_a_hue_after_power_on_has_none);
+    RUN_TEST(test_the_age_of_a_frame_reaches_back_a_period_before_it_began);
+    RUN_TEST(test_a_camera_that_becomes_slower_has_its_new_period);
+    RUN_TEST(test_the_lamps_go_out_for_a_look_and_come_back_in_time);
     RUN_TEST(test_the_dock_is_told_the_cameras_values);
     RUN_TEST(test_a_frame_of_another_format_is_refused);
     RUN_TEST(test_flash_is_written_while_the_camera_is_paused);

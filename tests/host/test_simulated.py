@@ -68,10 +68,14 @@ class Bench:
         return self.all("COMMAND_ACK")[-1].result
 
 
-def limit(value):
+def parameter(name, value):
     return dialect.MAVLink_param_set_message(
-        50, 1, b"LED_LIMIT", value, dialect.MAV_PARAM_TYPE_REAL32
+        50, 1, name.encode(), value, dialect.MAV_PARAM_TYPE_REAL32
     )
+
+
+def limit(value):
+    return parameter("LED_LIMIT", value)
 
 
 def led_limit(bench):
@@ -456,3 +460,13 @@ def test_a_client_that_leaves_within_a_message_does_no_harm_to_the_next_one():
         os.close(fd)
         with DockClient(Connection(url)) as client:
             assert client.parameter("LED_LIMIT") == 255
+
+
+def test_a_camera_at_rest_gives_a_frame_each_interval_and_wakes_when_it_is_changed():
+    bench = Bench().run(2)
+    frames = bench.status().frames
+    bench.send(parameter("DECISION_MS", 5000)).run(20)
+    assert 2 <= bench.status().frames - frames <= 8
+    frames = bench.status().frames
+    bench.send(parameter("DECISION_MS", 0)).run(2)
+    assert bench.status().frames - frames == pytest.approx(21, abs=3)

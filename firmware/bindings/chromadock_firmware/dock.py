@@ -139,6 +139,11 @@ class Dock:
         """Answer to ``save``: whether the settings are in flash now."""
         lib.dock_saved(self.c, written)
 
+    @property
+    def rest_ms(self) -> int:
+        """How long the camera may rest from one frame to the next; 0: not at all."""
+        return int(lib.dock_rest_ms(self.c))
+
     def settings_blob(self) -> bytes:
         """The settings as flash holds them."""
         blob = ffi.new("uint8_t[]", lib.SETTINGS_BLOB_BYTES)

@@ -101,7 +101,8 @@ class SimulatedDock:
 
     def next_due_s(self) -> float:
         """When ``step`` has something to do again, at the latest."""
-        return self._frame_due_s
+        rested_s = self._frame_s + self._core.rest_ms / 1000 if self._locked else self._frame_s
+        return max(self._frame_due_s, rested_s)
 
     def step(self, now_s: float) -> None:
         """Everything that is due by the clock.
@@ -115,7 +116,7 @@ class SimulatedDock:
             self._begin(self._once.pop(0).kind, now_s)
         if self._reboot_wanted:
             self._boot(SOFTWARE, now_s)
-        if now_s >= self._frame_due_s:
+        if now_s >= self.next_due_s():
             self._grab(now_s)
         if not self._locked and now_s >= self._locked_at_s:
             self._lock()
@@ -145,7 +146,7 @@ class SimulatedDock:
         self._reboot_wanted = self._grab_fails = False
         self._boot_s = now_s
         self._ready_s = now_s + BOOT_S
-        self._frame_due_s = self._ready_s
+        self._frame_due_s = self._frame_s = self._ready_s
         kept = self._core.marker_hue if reset == SOFTWARE else None
         self._core = _core(self._storage.load())
         if kept is not None:
@@ -178,6 +179,7 @@ class SimulatedDock:
         period = GRAB_TIMEOUT_S if lost else self._period_s
         # Late frames are left out, not caught up with.
         self._frame_due_s = max(self._frame_due_s + period, now_s)
+        self._frame_s = now_s
 
     def _drive(self, now_s: float) -> None:
         self._duties = self._core.led_duties(self._ms(now_s))

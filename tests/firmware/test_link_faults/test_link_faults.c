@@ -82,6 +82,31 @@ static void test_messages_that_seem_to_come_from_the_dock_are_ignored(void)
     }
 }
 
+/* A tunnel, a file, a log: whatever a message carries is not for the dock. */
+static void test_a_command_carried_by_another_message_is_not_obeyed(void)
+{
+    mavlink_message_t messages[3];
+    mavlink_tunnel_t tunnel = {.payload_length = 100};
+    mavlink_file_transfer_protocol_t file = {.target_system = 1};
+    mavlink_log_data_t log = {.count = 90};
+    link_start();
+    const wire_t inner =
+        wire_command(MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1, 0, 0, 0);
+    memcpy(tunnel.payload, inner.bytes, inner.length);
+    memcpy(file.payload + 12, inner.bytes, inner.length);
+    memcpy(log.data + 9, inner.bytes, inner.length);
+    mavlink_msg_tunnel_encode(1, 1, &messages[0], &tunnel);
+    mavlink_msg_file_transfer_protocol_encode(1, 1, &messages[1], &file);
+    mavlink_msg_log_data_encode(1, 1, &messages[2], &log);
+    for (size_t i = 0; i < 3; i++) {
+        tell(wire_of(&messages[i]));
+        assert_silent();
+        TEST_ASSERT_EQUAL_INT(DOCK_REQUEST_NONE, dock_take_request(&dock));
+        TEST_ASSERT_EQUAL_UINT(0, dock.link.receiver.length);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, status_now().link_faults);
+}
+
 /* As where the host's own bytes come back on a wire that is joined. */
 static void test_the_docks_own_words_coming_back_change_nothing(void)
 {
@@ -243,6 +268,7 @@ static void run_tests(void)
     RUN_TEST(test_messages_to_others_change_nothing_and_have_no_answer);
     RUN_TEST(test_messages_to_all_are_for_the_dock_too);
     RUN_TEST(test_messages_that_seem_to_come_from_the_dock_are_ignored);
+    RUN_TEST(test_a_command_carried_by_another_message_is_not_obeyed);
     RUN_TEST(test_the_docks_own_words_coming_back_change_nothing);
     RUN_TEST(test_no_corrupt_bit_of_any_command_changes_anything);
     RUN_TEST(test_corrupt_messages_are_counted_in_the_status);

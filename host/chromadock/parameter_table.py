@@ -43,4 +43,5 @@ PARAMETERS = (
     Parameter('CAM_WB', 0.0, 4.0, 1.0, '', ('as settled', 'sunny', 'cloudy', 'office', 'home'), 'White balance gains to lock at. A fixed preset is the same after every start.'),
     Parameter('REPORT_HZ', 0.0, 30.0, 5.0, 'Hz', (), 'DOCK_STATUS messages a second; 0: none.'),
     Parameter('LINK_BAUD', 9600.0, 921600.0, 921600.0, 'Bd', (), 'Speed of the serial port, from the next start on.'),
+    Parameter('SYSTEM_ID', 1.0, 254.0, 50.0, '', (), "The dock's MAVLink system and its name: dock 50. Two docks on one network need two, from the next start on."),
 )

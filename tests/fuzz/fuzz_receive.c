@@ -286,7 +286,8 @@ static void check_command(void)
     const link_acks_t *acks = &dock.link.acks;
     if (acks->count == before.link.acks.count)
         return;
-    if (acks->waiting[acks->count - 1].result == MAV_RESULT_ACCEPTED)
+    const uint8_t result = acks->waiting[acks->count - 1].result;
+    if (result == MAV_RESULT_ACCEPTED || result == MAV_RESULT_IN_PROGRESS)
         return;
     before.link.acks = *acks;
     before.link.faults = dock.link.faults;
@@ -430,8 +431,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     MUST(buffer != NULL);
     memset(&dock, 0xA5, sizeof dock);
     dock_init(&dock, &settings);
-    dock_set_board(&dock,
-                   &(dock_board_t){1, false, "01234567", buffer, BUFFER_BYTES});
+    dock_set_board(
+        &dock, &(dock_board_t){1, false, "01234567", buffer, BUFFER_BYTES, 1});
     for (int i = 0; i < MOST_STEPS && input_left > 0; i++) {
         step();
         must_be_sound();

@@ -54,13 +54,11 @@ static void test_messages_to_others_change_nothing_and_have_no_answer(void)
     }
 }
 
-static void test_messages_to_all_are_for_the_dock_too(void)
+static void test_messages_to_all_components_of_it_are_for_the_dock(void)
 {
-    static const uint8_t all[][2] = {{0, 0}, {50, 0}, {0, 1}, {50, 1}};
-    for (size_t i = 0; i < 4; i++) {
+    for (uint8_t component = 0; component < 2; component++) {
         link_start();
-        host.target_system = all[i][0];
-        host.target_component = all[i][1];
+        host.target_component = component;
         tell(wire_parameter_set("LED_LIMIT", 7));
         TEST_ASSERT_EQUAL_UINT8(7, dock.settings.led.limit);
         assert_value("LED_LIMIT", 7);
@@ -199,7 +197,7 @@ static void test_a_lost_camera_is_said_once_and_so_is_its_return(void)
 static void test_corrupt_settings_are_told_until_they_are_saved(void)
 {
     link_start();
-    const dock_board_t board = {4, true, "abcdef01", NULL, 0};
+    const dock_board_t board = {4, true, "abcdef01", NULL, 0, 0};
     const dock_settings_t settings = dock_default_settings();
     dock_init(&dock, &settings);
     dock_set_board(&dock, &board);
@@ -266,7 +264,7 @@ static void test_half_an_injected_frame_is_dropped_with_the_injection(void)
 static void run_tests(void)
 {
     RUN_TEST(test_messages_to_others_change_nothing_and_have_no_answer);
-    RUN_TEST(test_messages_to_all_are_for_the_dock_too);
+    RUN_TEST(test_messages_to_all_components_of_it_are_for_the_dock);
     RUN_TEST(test_messages_that_seem_to_come_from_the_dock_are_ignored);
     RUN_TEST(test_a_command_carried_by_another_message_is_not_obeyed);
     RUN_TEST(test_the_docks_own_words_coming_back_change_nothing);

@@ -10,7 +10,8 @@ static const struct {
     {MAVLINK_MSG_ID_PARAM_REQUEST_LIST, link_on_parameter_list},
     {MAVLINK_MSG_ID_PARAM_REQUEST_READ, link_on_parameter_read},
     {MAVLINK_MSG_ID_PARAM_SET, link_on_parameter_set},
-    {MAVLINK_MSG_ID_COMMAND_LONG, link_on_command},
+    {MAVLINK_MSG_ID_COMMAND_LONG, link_on_command_long},
+    {MAVLINK_MSG_ID_COMMAND_INT, link_on_command_int},
     {MAVLINK_MSG_ID_DATA_TRANSMISSION_HANDSHAKE, link_on_handshake},
     {MAVLINK_MSG_ID_ENCAPSULATED_DATA, link_on_packet},
 };
@@ -45,7 +46,7 @@ void link_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
         received_t message;
         while (receiver_next(receiver, message_crc_extra, &message)) {
             /* Only a ground station or a vehicle talks to a dock. */
-            if (message.system != DOCK_ID_SYSTEM)
+            if (message.system != dock->link.system)
                 handle(dock, &message, now_ms);
             receiver_done(receiver);
         }
@@ -55,7 +56,9 @@ void link_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
 size_t link_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
                      uint32_t now_ms)
 {
-    sender_t sender = {bytes, 0, capacity, &dock->link.sequence};
+    sender_t sender = {bytes, 0, capacity, &dock->link.sequence,
+                       dock->link.system};
+    link_expire_snapshot(&dock->link, now_ms);
     for (size_t i = 0; i < COUNT(senders); i++)
         if (!senders[i](dock, &sender, now_ms))
             break;

@@ -37,12 +37,15 @@ bool link_has_answered(const link_t *link); /* every command but a save */
 link_sender_t link_send_acks;
 
 /* link_commands.c */
-link_handler_t link_on_command;
+link_handler_t link_on_command_long, link_on_command_int;
 
 /* link_parameters.c */
 link_handler_t link_on_parameter_list, link_on_parameter_read,
     link_on_parameter_set;
-void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
+void link_reset_parameters(dock_t *dock);     /* to the defaults; reports all */
+int link_find_parameter(const char name[16]); /* its index, or -1 */
+bool link_set_parameter(dock_t *dock, int index, uint32_t real32); /* or says
+                                                        why it does not */
 link_sender_t link_send_parameters;
 
 /* link_images.c: what snapshots and injected frames have in common. */
@@ -51,9 +54,14 @@ uint16_t link_packets_of(uint32_t size);
 bool link_send_handshake(sender_t *sender, const link_image_t *image);
 
 /* link_snapshot.c */
-bool link_want_snapshot(dock_t *dock);        /* false: not now */
-bool link_holds_snapshot(const link_t *link); /* the buffer is in use */
-void link_take_snapshot(dock_t *dock, const frame_t *frame); /* if wanted */
+bool link_want_snapshot(link_t *link, uint32_t now_ms); /* false: not now */
+bool link_repeat_snapshot(link_t *link, int64_t number, int64_t first,
+                          int64_t count); /* false: there is no such packet */
+void link_expire_snapshot(link_t *link, uint32_t now_ms); /* a wish */
+bool link_is_sending_snapshot(const link_t *link);
+void link_forget_snapshot(link_t *link); /* the buffer is taken for another */
+void link_take_snapshot(dock_t *dock, const frame_t *frame,
+                        uint32_t now_ms); /* if one is wanted */
 link_sender_t link_send_snapshot;
 
 /* link_injection.c */
@@ -63,7 +71,10 @@ bool link_injection_lasts(link_t *link, uint32_t now_ms); /* or ends it */
 link_sender_t link_send_echo;
 
 /* link_reports.c */
+int link_report_of(int64_t id); /* a report_t; -1 for another message */
 void link_ask_for_report(link_t *link, report_t report);
+void link_ask_for_interval(link_t *link, uint16_t id);
+void link_set_period(link_t *link, report_t report, uint32_t period_ms);
 link_sender_t link_send_reports;
 
 static inline void link_count_fault(link_t *link)
@@ -71,10 +82,11 @@ static inline void link_count_fault(link_t *link)
     link->faults++;
 }
 
-/* True for a message to this dock or to all. */
-static inline bool link_is_for_us(uint8_t system, uint8_t component)
+/* True for a message to this dock, or to a component of every system. */
+static inline bool link_is_for_us(const link_t *link, uint8_t system,
+                                  uint8_t component)
 {
-    return (system == DOCK_ID_SYSTEM || system == 0) &&
+    return (system == link->system || system == 0) &&
            (component == DOCK_ID_COMPONENT || component == 0);
 }
 

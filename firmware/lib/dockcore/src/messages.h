@@ -30,6 +30,7 @@ typedef struct {
     uint8_t *bytes;
     size_t length, capacity;
     uint8_t *sequence;
+    uint8_t system; /* whose messages they are */
 } sender_t;
 
 /* False, nothing written, where it does not fit.  The payload is mavgen's

@@ -34,4 +34,5 @@ const parameter_t PARAMETERS[PARAMETER_COUNT] = {
     {"CAM_WB", FIELD(camera.white_balance), 0, 4, 1, 1, 0},
     {"REPORT_HZ", FIELD(report_hz), 0, 30, 5, 1, 0},
     {"LINK_BAUD", FIELD(link_baud), 9600, 921600, 921600, 1, 0},
+    {"SYSTEM_ID", FIELD(system_id), 1, 254, 50, 1, 0},
 };

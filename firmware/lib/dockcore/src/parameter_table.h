@@ -5,7 +5,7 @@
 #include "parameter.h"
 
 /* Changes with the table: a blob of another version is not read. */
-#define PARAMETER_TABLE_VERSION UINT32_C(0x302025fa)
+#define PARAMETER_TABLE_VERSION UINT32_C(0x774770cc)
 
 enum {
     PARAMETER_MAPPING,
@@ -34,6 +34,7 @@ enum {
     PARAMETER_CAM_WB,
     PARAMETER_REPORT_HZ,
     PARAMETER_LINK_BAUD,
+    PARAMETER_SYSTEM_ID,
     PARAMETER_COUNT
 };
 

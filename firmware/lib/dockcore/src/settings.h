@@ -26,6 +26,7 @@ typedef struct {
     camera_settings_t camera;
     uint8_t report_hz;
     uint32_t link_baud; /* from the next start on */
+    uint8_t system_id;  /* MAVLink's, from the next start on */
 } dock_settings_t;
 
 dock_settings_t dock_default_settings(void);
@@ -34,7 +35,7 @@ dock_settings_t dock_default_settings(void);
 bool dock_settings_are_valid(const dock_settings_t *settings);
 
 /* For flash: version, every parameter, CRC-32. */
-#define SETTINGS_BLOB_BYTES 112
+#define SETTINGS_BLOB_BYTES 116
 
 void settings_to_blob(const dock_settings_t *settings,
                       uint8_t blob[SETTINGS_BLOB_BYTES]);

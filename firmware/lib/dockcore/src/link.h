@@ -102,15 +102,28 @@ typedef struct {
     uint32_t heard_ms; /* when the host's last handshake or packet came */
 } link_injection_t;
 
+/* Which parameters are to be sent, and whose turn it is. */
 typedef struct {
-    uint8_t system;          /* dock.c: MAVLink's, until the next start */
-    receiver_t receiver;     /* link.c */
-    uint8_t sequence;        /* link.c: number of the next message out */
-    uint32_t faults;         /* link_count_fault: messages refused */
-    uint32_t parameters_due; /* link_parameters.c: a bit each, to be sent */
-    uint8_t next_parameter;  /* link_parameters.c: whose turn it is then */
-    uint16_t interval_of;    /* link_reports.c: the message whose interval a
-                                host wants to know */
+    uint32_t due; /* a bit each */
+    uint8_t next;
+} link_turn_t;
+
+/* link_typed.c: the extended parameter protocol. */
+typedef struct {
+    link_turn_t values;
+    link_turn_t answers; /* to PARAM_EXT_SET */
+    uint32_t refused;    /* a bit each: what the answer says */
+} link_typed_t;
+
+typedef struct {
+    uint8_t system;         /* dock.c: MAVLink's, until the next start */
+    receiver_t receiver;    /* link.c */
+    uint8_t sequence;       /* link.c: number of the next message out */
+    uint32_t faults;        /* link_count_fault: messages refused */
+    link_turn_t parameters; /* link_parameters.c: values to be sent */
+    link_typed_t typed;
+    uint16_t interval_of; /* link_reports.c: the message whose interval a
+                             host wants to know */
     link_texts_t texts;
     link_acks_t acks;
     link_report_t reports[REPORTS];

@@ -39,14 +39,31 @@ link_sender_t link_send_acks;
 /* link_commands.c */
 link_handler_t link_on_command_long, link_on_command_int;
 
-/* link_parameters.c */
-link_handler_t link_on_parameter_list, link_on_parameter_read,
-    link_on_parameter_set;
-void link_reset_parameters(dock_t *dock);     /* to the defaults; reports all */
-int link_find_parameter(const char name[16]); /* its index, or -1 */
+/* link_settings.c: both return an index, or say that there is none: -1. */
+int link_find_parameter(link_t *link, const char name[16]);
+int link_asked_parameter(link_t *link, int16_t index, const char name[16]);
 bool link_set_parameter(dock_t *dock, int index, uint32_t real32); /* or says
                                                         why it does not */
+void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
+
+/* link_parameters.c */
+typedef bool link_send_one_t(const dock_t *dock, uint16_t index,
+                             sender_t *sender);
+link_handler_t link_on_parameter_list, link_on_parameter_read,
+    link_on_parameter_set;
 link_sender_t link_send_parameters;
+void link_list_parameters(link_t *link); /* all are to be sent */
+void link_turn_all(link_turn_t *turn);
+void link_turn_one(link_turn_t *turn, int index);
+bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
+                       link_send_one_t *send_one);
+/* An integer of a MAV_PARAM_TYPE that begins with these bytes, as bits of an
+ * IEEE 754 number; not a number for the other types. */
+uint32_t link_integer_of(uint32_t bits, uint8_t type);
+
+/* link_typed.c */
+link_handler_t link_on_typed_list, link_on_typed_read, link_on_typed_set;
+link_sender_t link_send_typed;
 
 /* link_images.c: what snapshots and injected frames have in common. */
 #define PACKET MAVLINK_MSG_ENCAPSULATED_DATA_FIELD_DATA_LEN
@@ -88,6 +105,14 @@ static inline bool link_is_for_us(const link_t *link, uint8_t system,
 {
     return (system == link->system || system == 0) &&
            (component == DOCK_ID_COMPONENT || component == 0);
+}
+
+/* True for a message to this dock, not to every system: one that changes
+ * something. */
+static inline bool link_is_for_this(const link_t *link, uint8_t system,
+                                    uint8_t component)
+{
+    return system != 0 && link_is_for_us(link, system, component);
 }
 
 #endif

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,9 +17,14 @@ from chromadock.simulated.storage import Storage
 from chromadock.simulated.texts import DRIVER, POWER_ON, RESET_REASONS, SOFTWARE, boot_text
 
 GIT_HASH = b"simulate"
+UID = 0x51_D0_C0_00_00_01
+"""In place of the chip's own."""
 BOOT_S = 0.1
 SETTLE_S = 0.5
 """From the start to locked exposure, gain and white balance; a board takes seconds."""
+SAVE_S = 0.5
+"""From the request to settings in flash: the board waits for its camera to pause, 0.24 s, or
+4 s where that gives no frame."""
 GRAB_TIMEOUT_S = 4.0
 """The camera driver's own."""
 SETTLED_EXPOSURE, SETTLED_GAIN = 300, 4
@@ -42,6 +48,8 @@ class SimulatedDock:
         What goes wrong, and when.
     seed
         Of noise and damaged bytes: the same ones every time.
+    save_s
+        Seconds that saving the settings takes, without frames from the camera.
 
     Raises
     ------
@@ -57,9 +65,11 @@ class SimulatedDock:
         faults: Sequence[Fault] = (),
         seed: int = 0,
         now_s: float = 0.0,
+        save_s: float = SAVE_S,
     ) -> None:
         self._camera = camera
         self._period_s = 1 / fps
+        self._save_s = save_s
         self._storage = Storage(settings)
         self._random = random.Random(seed)
         share = max((f.share for f in faults), default=0.0)
@@ -83,7 +93,7 @@ class SimulatedDock:
 
     def next_due_s(self) -> float:
         """When ``step`` has something to do again, at the latest."""
-        return self._frame_due_s
+        return min(self._frame_due_s, self._saved_at_s)
 
     def step(self, now_s: float) -> None:
         """Everything that is due by the clock.
@@ -97,6 +107,8 @@ class SimulatedDock:
             self._begin(self._once.pop(0).kind, now_s)
         if self._reboot_wanted:
             self._boot(SOFTWARE, now_s)
+        if now_s >= self._saved_at_s:
+            self._save(now_s)
         if now_s >= self._frame_due_s:
             self._grab(now_s)
         if not self._locked and now_s >= self._locked_at_s:
@@ -124,11 +136,12 @@ class SimulatedDock:
     def _boot(self, reset: str, now_s: float) -> None:
         self._text += boot_text(reset)
         self._reboot_wanted = self._grab_fails = False
+        self._saved_at_s = math.inf
         self._boot_s = now_s
         self._ready_s = now_s + BOOT_S
         self._frame_due_s = self._ready_s
         self._core = _core(self._storage.load())
-        self._core.set_board(GIT_HASH, RESET_REASONS[reset])
+        self._core.set_board(GIT_HASH, RESET_REASONS[reset], uid=UID)
         self._unlock(now_s)
 
     def _begin(self, kind: str, now_s: float) -> None:
@@ -153,12 +166,17 @@ class SimulatedDock:
 
     def _obey(self, request: str, now_s: float) -> None:
         if request == "save":
-            blob = self._core.settings_blob()
-            self._core.saved(not self._lasts("storage", now_s) and self._storage.save(blob))
+            self._saved_at_s = now_s + self._save_s
+            self._frame_due_s = max(self._frame_due_s, self._saved_at_s)
         elif request == "camera":
             self._unlock(now_s)
         elif request == "reboot":
             self._reboot_wanted = True
+
+    def _save(self, now_s: float) -> None:
+        self._saved_at_s = math.inf
+        blob = self._core.settings_blob()
+        self._core.saved(not self._lasts("storage", now_s) and self._storage.save(blob))
 
     def _unlock(self, now_s: float) -> None:
         self._locked = False

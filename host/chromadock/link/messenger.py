@@ -83,8 +83,8 @@ class Messenger:
         self._last_byte = clock()
 
     def send(self, message: Message) -> None:
-        """Send a message of the dialect, to the dock if it has an address."""
-        if hasattr(message, "target_system"):
+        """Send a message of the dialect; one to a dock of the default system goes to this one."""
+        if getattr(message, "target_system", None) == DOCK_SYSTEM:
             message.target_system = EVERY_SYSTEM if self.system is None else self.system
         data = message.pack(self._mav)
         self._mav.seq = (self._mav.seq + 1) % 256
@@ -187,7 +187,7 @@ def _is_docks(message: Message) -> bool:
     """Whether only a dock sends such a message: by the default system, by what its heartbeat
     says it is, or because no one else has it."""
     kind = message.get_type()
-    if kind == "HEARTBEAT":
+    if kind == "HEARTBEAT" and message.get_srcSystem() != DOCK_SYSTEM:
         return bool(
             message.type == dialect.MAV_TYPE_GENERIC
             and message.autopilot == dialect.MAV_AUTOPILOT_GENERIC

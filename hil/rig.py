@@ -91,9 +91,13 @@ class Rig:
         return heard
 
     def command(self, number: int, *values: float) -> int:
-        """The result of a command."""
+        """The last result of a command."""
         self.send(command_long(number, *values))
-        return int(self.wait("COMMAND_ACK", lambda m: m.command == number).result)
+
+        def last(ack: Message) -> bool:
+            return bool(ack.command == number and ack.result != dialect.MAV_RESULT_IN_PROGRESS)
+
+        return int(self.wait("COMMAND_ACK", last).result)
 
     def status(self, wanted: Callable[[Message], bool], timeout_s: float = 5.0) -> Message:
         """The first DOCK_STATUS that ``wanted`` accepts, asked for again and again."""

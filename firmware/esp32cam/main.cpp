@@ -66,6 +66,7 @@ static void tell_board(dock_stored_t stored)
         board.git_hash[i] = static_cast<uint8_t>(hash[i]);
     board.buffer = image;
     board.capacity = sizeof image;
+    board.uid = ESP.getEfuseMac();
     dock_set_board(&dock, &board);
 }
 

@@ -157,7 +157,7 @@ static size_t host_message(uint8_t *bytes, size_t capacity, uint32_t id,
                            uint8_t crc_extra, const void *payload, uint8_t n)
 {
     uint8_t sequence = 0;
-    sender_t sender = {bytes, 0, capacity, &sequence};
+    sender_t sender = {bytes, 0, capacity, &sequence, DOCK_ID_SYSTEM};
     message_send(&sender, id, crc_extra, payload, n);
     const size_t end = sender.length - 2;
     bytes[5] = 255; /* not the dock's own address */
@@ -179,7 +179,7 @@ static bool print_link_stack(void)
     static uint8_t buffer[128], out[4096], first[RECEIVER_CAPACITY],
         second[RECEIVER_CAPACITY];
     const dock_settings_t settings = dock_default_settings();
-    const dock_board_t board = {1, true, {0}, buffer, sizeof buffer};
+    const dock_board_t board = {1, true, {0}, buffer, sizeof buffer, 0};
     dock_init(&dock, &settings);
     dock_set_board(&dock, &board);
     mavlink_data_transmission_handshake_t handshake = {

@@ -45,4 +45,5 @@ PARAMETERS = (
     Parameter('LED_LIMIT_DARK', 0.0, 255.0, 255.0, '', (), 'Brightness where the water is black; from there to LED_LIMIT in bright water. No less than LED_LIMIT: not dimmed.'),
     Parameter('DECISION_MS', 0.0, 10000.0, 0.0, 'ms', (), 'From one decision to the next, while sensor and processor rest; 0: every frame.'),
     Parameter('LINK_BAUD', 9600.0, 921600.0, 921600.0, 'Bd', (), 'Speed of the serial port, from the next start on.'),
+    Parameter('SYSTEM_ID', 1.0, 254.0, 50.0, '', (), "The dock's MAVLink system and its name: dock 50. Two docks on one network need two, from the next start on."),
 )

@@ -56,12 +56,21 @@ static const uint32_t kinds[] = {
     MAVLINK_MSG_ID_DATA_TRANSMISSION_HANDSHAKE,
     MAVLINK_MSG_ID_ENCAPSULATED_DATA,
     MAVLINK_MSG_ID_HEARTBEAT, /* not for the dock */
+    MAVLINK_MSG_ID_COMMAND_INT,
+    MAVLINK_MSG_ID_PARAM_EXT_REQUEST_LIST,
+    MAVLINK_MSG_ID_PARAM_EXT_REQUEST_READ,
+    MAVLINK_MSG_ID_PARAM_EXT_SET,
 };
 
 static const uint16_t commands[] = {
-    MAV_CMD_DOCK_LED,          MAV_CMD_DOCK_SNAPSHOT,
-    MAV_CMD_PREFLIGHT_STORAGE, MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN,
-    MAV_CMD_REQUEST_MESSAGE,   MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+    MAV_CMD_DOCK_LED,
+    MAV_CMD_DOCK_SNAPSHOT,
+    MAV_CMD_PREFLIGHT_STORAGE,
+    MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN,
+    MAV_CMD_REQUEST_MESSAGE,
+    MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+    MAV_CMD_SET_MESSAGE_INTERVAL,
+    MAV_CMD_GET_MESSAGE_INTERVAL,
 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -134,7 +143,10 @@ static void must_be_sound(void)
         MUST(duty[i] <= LED_FULL);
     MUST(link->receiver.length <= RECEIVER_CAPACITY);
     MUST(link->texts.count <= LINK_TEXTS && link->acks.count <= LINK_ACKS);
-    MUST(link->parameters_due >> PARAMETER_COUNT == 0);
+    MUST((link->parameters.due | link->typed.values.due |
+          link->typed.answers.due | link->typed.refused) >>
+             PARAMETER_COUNT ==
+         0);
     MUST(dock.requests.save <= SAVE_WRITING);
     const link_injection_t *injection = &link->injection;
     MUST(injection->image.size <= BUFFER_BYTES);
@@ -170,7 +182,7 @@ static void transmit(size_t capacity)
     MUST(of_messages == n);
     if (capacity > 3000) /* room for all but images */
         MUST(dock.link.acks.count == 0 && dock.link.texts.count == 0 &&
-             dock.link.parameters_due == 0 &&
+             dock.link.parameters.due == 0 &&
              dock.link.reports[REPORT_STATUS].state != REPORT_DUE);
     free(bytes);
 }
@@ -286,7 +298,8 @@ static void check_command(void)
     const link_acks_t *acks = &dock.link.acks;
     if (acks->count == before.link.acks.count)
         return;
-    if (acks->waiting[acks->count - 1].result == MAV_RESULT_ACCEPTED)
+    const uint8_t result = acks->waiting[acks->count - 1].result;
+    if (result == MAV_RESULT_ACCEPTED || result == MAV_RESULT_IN_PROGRESS)
         return;
     before.link.acks = *acks;
     before.link.faults = dock.link.faults;
@@ -430,8 +443,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     MUST(buffer != NULL);
     memset(&dock, 0xA5, sizeof dock);
     dock_init(&dock, &settings);
-    dock_set_board(&dock,
-                   &(dock_board_t){1, false, "01234567", buffer, BUFFER_BYTES});
+    dock_set_board(
+        &dock, &(dock_board_t){1, false, "01234567", buffer, BUFFER_BYTES, 1});
     for (int i = 0; i < MOST_STEPS && input_left > 0; i++) {
         step();
         must_be_sound();

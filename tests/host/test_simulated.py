@@ -34,6 +34,7 @@ class Bench:
 
     def __init__(self, *faults, start_s=0.0, source=None, **options):
         self.now_s = start_s
+        options.setdefault("save_s", 0.1)
         self.dock = SimulatedDock(
             open_camera(source), faults=[parse_fault(f) for f in faults], now_s=start_s, **options
         )
@@ -149,6 +150,25 @@ def test_settings_that_cannot_be_saved_are_reported(tmp_path):
     bench = Bench(settings=tmp_path / "missing" / "flash").run(1).send(SAVE).run(0.5)
     assert bench.result() == dialect.MAV_RESULT_FAILED
     assert bench.status().faults & dialect.DOCK_FAULT_STORAGE
+
+
+def test_saving_takes_as_long_as_on_a_board_and_the_camera_waits():
+    bench = Bench(fps=10, save_s=2).run(1).send(SAVE)
+    frames = bench.status().frames
+    assert bench.result() == dialect.MAV_RESULT_IN_PROGRESS
+    bench.run(1.5)
+    assert bench.status().frames <= frames + 1
+    assert bench.result() == dialect.MAV_RESULT_IN_PROGRESS
+    bench.run(1.5)
+    assert bench.status().frames > frames + 5
+    assert bench.result() == dialect.MAV_RESULT_ACCEPTED
+
+
+def test_power_that_is_lost_while_saving_leaves_the_old_settings(tmp_path):
+    file = tmp_path / "flash"
+    bench = Bench("reboot@2s", settings=file, save_s=1).run(1.5).send(limit(100), SAVE).run(3)
+    assert led_limit(bench) == 255
+    assert not file.exists()
 
 
 def test_the_storage_fault_begins_at_its_time():

@@ -116,6 +116,7 @@ static void test_the_dock_knows_its_board(void)
     TEST_ASSERT_EQUAL_UINT8(ESP_RST_BROWNOUT, dock.board.reset_reason);
     TEST_ASSERT_EQUAL_MEMORY("unknown\0", dock.board.git_hash, 8);
     TEST_ASSERT_EQUAL_UINT32(160 * 120 * 2, dock.board.capacity);
+    TEST_ASSERT_EQUAL_HEX64(UINT64_C(0x240AC4123456), dock.board.uid);
     TEST_ASSERT_EQUAL_INT(0,
                           reinterpret_cast<uintptr_t>(dock.board.buffer) % 2);
 }

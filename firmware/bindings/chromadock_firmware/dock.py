@@ -94,12 +94,16 @@ class Dock:
         self._now_ms = now_ms
 
     def set_board(
-        self, git_hash: bytes = b"", reset_reason: int = 0, capacity: int = lib.DOCK_IMAGE_BYTES
+        self,
+        git_hash: bytes = b"",
+        reset_reason: int = 0,
+        capacity: int = lib.DOCK_IMAGE_BYTES,
+        uid: int = 0,
     ) -> None:
         """What the board knows of itself.
 
         ``git_hash`` has at most 8 letters; ``capacity`` is the room in bytes for a snapshot
-        or an injected frame.
+        or an injected frame; ``uid`` is the chip's number.
         """
         self._buffer = ffi.new("uint8_t[]", capacity) if capacity else ffi.NULL
         board = ffi.new("dock_board_t *")
@@ -108,6 +112,7 @@ class Dock:
         board.git_hash = git_hash.ljust(8, b"\0")
         board.buffer = self._buffer
         board.capacity = capacity
+        board.uid = uid
         lib.dock_set_board(self.c, board)
 
     def set_camera(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,9 +18,14 @@ from chromadock.simulated.storage import Storage
 from chromadock.simulated.texts import DRIVER, POWER_ON, RESET_REASONS, SOFTWARE, boot_text
 
 GIT_HASH = b"simulate"
+UID = 0x51_D0_C0_00_00_01
+"""In place of the chip's own."""
 BOOT_S = 0.1
 SETTLE_S = 0.5
 """From the start to locked exposure, gain and white balance; a board takes seconds."""
+SAVE_S = 0.5
+"""From the request to settings in flash: the board waits for its camera to pause, 0.24 s, or
+4 s where that gives no frame."""
 GRAB_TIMEOUT_S = 4.0
 """The camera driver's own."""
 SETTLED_EXPOSURE, SETTLED_GAIN = 300, 4
@@ -49,6 +55,8 @@ class SimulatedDock:
         Of noise and damaged bytes: the same ones every time.
     own_light
         What the camera sees of the lamps, share 0..1 of its full scale.
+    save_s
+        Seconds that saving the settings takes, without frames from the camera.
 
     Raises
     ------
@@ -65,11 +73,13 @@ class SimulatedDock:
         seed: int = 0,
         now_s: float = 0.0,
         own_light: float = 0.0,
+        save_s: float = SAVE_S,
     ) -> None:
         self._camera = camera
         self._period_s = 1 / fps
         self._own_light = OwnLight(own_light)
         self._duties = (0, 0, 0)
+        self._save_s = save_s
         self._storage = Storage(settings)
         self._random = random.Random(seed)
         share = max((f.share for f in faults), default=0.0)
@@ -101,6 +111,9 @@ class SimulatedDock:
 
     def next_due_s(self) -> float:
         """When ``step`` has something to do again, at the latest."""
+        return min(self._grab_due_s(), self._saved_at_s)
+
+    def _grab_due_s(self) -> float:
         rested_s = self._frame_s + self._core.rest_ms / 1000 if self._locked else self._frame_s
         return max(self._frame_due_s, rested_s)
 
@@ -116,7 +129,9 @@ class SimulatedDock:
             self._begin(self._once.pop(0).kind, now_s)
         if self._reboot_wanted:
             self._boot(SOFTWARE, now_s)
-        if now_s >= self.next_due_s():
+        if now_s >= self._saved_at_s:
+            self._save(now_s)
+        if now_s >= self._grab_due_s():
             self._grab(now_s)
         if not self._locked and now_s >= self._locked_at_s:
             self._lock()
@@ -144,6 +159,7 @@ class SimulatedDock:
     def _boot(self, reset: str, now_s: float) -> None:
         self._text += boot_text(reset)
         self._reboot_wanted = self._grab_fails = False
+        self._saved_at_s = math.inf
         self._boot_s = now_s
         self._ready_s = now_s + BOOT_S
         self._frame_due_s = self._frame_s = self._ready_s
@@ -152,7 +168,7 @@ class SimulatedDock:
         if kept is not None:
             self._core.set_last_hue(kept)
         self._drive(now_s)
-        self._core.set_board(GIT_HASH, RESET_REASONS[reset])
+        self._core.set_board(GIT_HASH, RESET_REASONS[reset], uid=UID)
         self._unlock(now_s)
 
     def _begin(self, kind: str, now_s: float) -> None:
@@ -187,12 +203,17 @@ class SimulatedDock:
 
     def _obey(self, request: str, now_s: float) -> None:
         if request == "save":
-            blob = self._core.settings_blob()
-            self._core.saved(not self._lasts("storage", now_s) and self._storage.save(blob))
+            self._saved_at_s = now_s + self._save_s
+            self._frame_due_s = max(self._frame_due_s, self._saved_at_s)
         elif request == "camera":
             self._unlock(now_s)
         elif request == "reboot":
             self._reboot_wanted = True
+
+    def _save(self, now_s: float) -> None:
+        self._saved_at_s = math.inf
+        blob = self._core.settings_blob()
+        self._core.saved(not self._lasts("storage", now_s) and self._storage.save(blob))
 
     def _unlock(self, now_s: float) -> None:
         self._locked = False

@@ -32,7 +32,7 @@ static void test_it_starts_with_a_heartbeat_a_text_and_a_status(void)
     TEST_ASSERT_EQUAL_UINT(1, heard_count(MAVLINK_MSG_ID_HEARTBEAT));
     TEST_ASSERT_EQUAL_UINT(1, heard_count(MAVLINK_MSG_ID_DOCK_STATUS));
     mavlink_msg_statustext_decode(heard(MAVLINK_MSG_ID_STATUSTEXT, 0), &text);
-    TEST_ASSERT_EQUAL_STRING("Chromadock abcdef01 started, reset reason 1",
+    TEST_ASSERT_EQUAL_STRING("Chromadock 50 abcdef01 started, reset reason 1",
                              text.text);
 }
 
@@ -164,6 +164,7 @@ static void assert_version(uint16_t command, float p1)
     TEST_ASSERT_EQUAL_MEMORY("abcdef01", version.flight_custom_version, 8);
     TEST_ASSERT_EQUAL_MEMORY(&digest, version.middleware_custom_version, 8);
     TEST_ASSERT_EQUAL_HEX64(MAV_PROTOCOL_CAPABILITY_MAVLINK2 |
+                                MAV_PROTOCOL_CAPABILITY_COMMAND_INT |
                                 MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST,
                             version.capabilities);
     assert_silent();

@@ -10,6 +10,14 @@
 /* esp32-hal-cpu.h */
 extern "C" bool setCpuFrequencyMhz(uint32_t cpu_freq_mhz);
 
+/* Esp.h */
+class EspClass
+{
+  public:
+    uint64_t getEfuseMac();
+};
+extern EspClass ESP;
+
 void setup(void);
 void loop(void);
 

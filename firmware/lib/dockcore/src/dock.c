@@ -12,7 +12,8 @@ void dock_init(dock_t *dock, const dock_settings_t *settings)
     dock_mend_settings(&dock->settings);
     decision_init(&dock->decision, dock->settings.fallback_hue);
     look_init(&dock->look);
-    lamps_init(&dock->lamps, &dock->settings);
+    lamps_follow(&dock->lamps, &dock->settings);
+    dock->link.system = dock->settings.system_id;
 }
 
 static void tell_settings(link_t *link, dock_stored_t stored)
@@ -35,6 +36,8 @@ void dock_set_board(dock_t *dock, const dock_board_t *board)
     char hash[sizeof board->git_hash + 1] = {0};
     memcpy(hash, board->git_hash, sizeof board->git_hash);
     line_add(&line, "Chromadock ");
+    line_add_fixed(&line, dock->link.system, 0);
+    line_add(&line, " ");
     line_add(&line, hash);
     line_add(&line, " started, reset reason ");
     line_add_fixed(&line, board->reset_reason, 0);
@@ -85,7 +88,7 @@ void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms)
     look_frame(&dock->look, &dock->decision, &dock->settings,
                lamps_follow_water(&dock->lamps), now_ms - frame->age_ms,
                now_ms);
-    link_take_snapshot(dock, frame);
+    link_take_snapshot(dock, frame, now_ms);
 }
 
 void dock_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
@@ -97,6 +100,9 @@ size_t dock_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
                      uint32_t now_ms)
 {
     link_receive(dock, NULL, 0, now_ms);
+    if (lamps_expire(&dock->lamps, &dock->settings, now_ms))
+        link_say_words(&dock->link, MAV_SEVERITY_NOTICE,
+                       "LED test ended after 10 minutes: LED_MODE again");
     return link_transmit(dock, bytes, capacity, now_ms);
 }
 

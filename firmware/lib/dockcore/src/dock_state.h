@@ -28,6 +28,7 @@ typedef struct {
     uint8_t git_hash[8];    /* ASCII, first letters of the commit */
     uint8_t *buffer;   /* for a snapshot or an injected frame; NULL: none */
     uint32_t capacity; /* of it, bytes; even address */
+    uint64_t uid;      /* of the chip, no two alike; 0: not known */
 } dock_board_t;
 
 /* What the camera is set to now, read back from the sensor. */

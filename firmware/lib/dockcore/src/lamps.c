@@ -7,36 +7,34 @@
 _Static_assert((int)DOCK_LED_AUTO == 0 && (int)DOCK_LED_HUE == 1,
                "LED_MODE's values are DOCK_LED's first two");
 
-void lamps_init(lamps_t *lamps, const dock_settings_t *settings)
+void lamps_follow(lamps_t *lamps, const dock_settings_t *settings)
 {
-    memset(lamps, 0, sizeof *lamps);
     lamps->mode = settings->led_mode;
     lamps->hue = settings->led_hue;
+    lamps->testing = false;
 }
 
-void lamps_follow(lamps_t *lamps, const dock_settings_t *before,
-                  const dock_settings_t *now)
+static void test(lamps_t *lamps, uint8_t mode, uint32_t now_ms)
 {
-    if (before->led_mode == now->led_mode && before->led_hue == now->led_hue)
-        return;
-    lamps->mode = now->led_mode;
-    lamps->hue = now->led_hue;
+    lamps->mode = mode;
+    lamps->testing = true;
+    lamps->tested_ms = now_ms;
 }
 
-void lamps_show_marker(lamps_t *lamps)
+void lamps_test_marker(lamps_t *lamps, uint32_t now_ms)
 {
-    lamps->mode = DOCK_LED_AUTO;
+    test(lamps, DOCK_LED_AUTO, now_ms);
 }
 
-void lamps_show_hue(lamps_t *lamps, uint16_t hue)
+void lamps_test_hue(lamps_t *lamps, uint16_t hue, uint32_t now_ms)
 {
-    lamps->mode = DOCK_LED_HUE;
+    test(lamps, DOCK_LED_HUE, now_ms);
     lamps->hue = hue;
 }
 
-void lamps_show_raw(lamps_t *lamps, const uint8_t rgb[3])
+void lamps_test_raw(lamps_t *lamps, const uint8_t rgb[3], uint32_t now_ms)
 {
-    lamps->mode = DOCK_LED_RAW;
+    test(lamps, DOCK_LED_RAW, now_ms);
     memcpy(lamps->raw, rgb, sizeof lamps->raw);
 }
 
@@ -66,6 +64,15 @@ static void show_marker(const decision_t *decision, const led_settings_t *led,
     const uint8_t value = decision->decided ? decision->water_value : 255;
     const led_settings_t dimmed = led_dimmed(led, value);
     led_duties(duty, decision->steady.shown, &dimmed);
+}
+
+bool lamps_expire(lamps_t *lamps, const dock_settings_t *settings,
+                  uint32_t now_ms)
+{
+    if (!lamps->testing || now_ms - lamps->tested_ms < LAMPS_TEST_MS)
+        return false;
+    lamps_follow(lamps, settings);
+    return true;
 }
 
 void lamps_duties(const lamps_t *lamps, const decision_t *decision,

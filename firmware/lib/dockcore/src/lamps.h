@@ -10,26 +10,33 @@
 #include "decision.h"
 #include "settings.h"
 
+/* So long the LEDs show what a command asked for: a dock that somebody left
+ * like that would be lost to every vehicle. */
+#define LAMPS_TEST_MS 600000
+
 typedef struct {
-    bool begun;        /* whether lamps_turn was called yet */
-    bool overdue;      /* no decision came in time: show a hue all the same */
-    uint32_t since_ms; /* when lamps_turn was first called */
-    uint8_t mode;      /* DOCK_LED_AUTO, _HUE, _RAW of chromadock.xml */
-    uint16_t hue;      /* shown in mode DOCK_LED_HUE */
-    uint8_t raw[3];    /* R G B, shown in mode DOCK_LED_RAW */
+    bool begun;         /* whether lamps_turn was called yet */
+    bool overdue;       /* no decision came in time: show a hue all the same */
+    uint32_t since_ms;  /* when lamps_turn was first called */
+    uint8_t mode;       /* DOCK_LED_AUTO, _HUE, _RAW of chromadock.xml */
+    uint16_t hue;       /* shown in mode DOCK_LED_HUE */
+    uint8_t raw[3];     /* R G B, shown in mode DOCK_LED_RAW */
+    bool testing;       /* a command said what to show, not the settings */
+    uint32_t tested_ms; /* when it did */
 } lamps_t;
 
-/* Starts as the settings say. */
-void lamps_init(lamps_t *lamps, const dock_settings_t *settings);
+/* Shows what the settings say, and ends a test. */
+void lamps_follow(lamps_t *lamps, const dock_settings_t *settings);
 
-/* Goes over to what the settings say where they changed in that. */
-void lamps_follow(lamps_t *lamps, const dock_settings_t *before,
-                  const dock_settings_t *now);
+/* Each begins a test. */
+void lamps_test_marker(lamps_t *lamps, uint32_t now_ms);
+void lamps_test_hue(lamps_t *lamps, uint16_t hue, uint32_t now_ms);
+void lamps_test_raw(lamps_t *lamps, const uint8_t rgb[3], uint32_t now_ms);
 
-/* Each until the next of these calls, or the next change of the settings. */
-void lamps_show_marker(lamps_t *lamps);
-void lamps_show_hue(lamps_t *lamps, uint16_t hue);
-void lamps_show_raw(lamps_t *lamps, const uint8_t rgb[3]);
+/* Ends a test that has lasted for LAMPS_TEST_MS.  Returns true where it did.
+ * To be called more often than the clock wraps. */
+bool lamps_expire(lamps_t *lamps, const dock_settings_t *settings,
+                  uint32_t now_ms);
 
 /* To be called with every frame and fault and before the lamps are driven, from
  * the start on: sees that a dock without a decision

@@ -34,7 +34,8 @@ typedef struct {
 typedef struct {
     link_ack_t waiting[LINK_ACKS];
     uint8_t count;
-    link_ack_t save; /* goes out when the board has saved, with its result */
+    link_ack_t save; /* goes out when the board has saved, with its result;
+                        command 0: nobody waits for that */
 } link_acks_t;
 
 /* Messages that the dock sends by the clock or when it is asked. */
@@ -42,6 +43,7 @@ typedef enum {
     REPORT_HEARTBEAT,
     REPORT_VERSION,
     REPORT_STATUS,
+    REPORT_INTERVAL,
     REPORTS
 } report_t;
 
@@ -51,31 +53,38 @@ typedef enum {
     REPORT_DUE,        /* due now, whatever its period */
 } report_state_t;
 
+#define REPORT_OFF UINT32_MAX
+
 /* link_reports.c */
 typedef struct {
     report_state_t state;
-    uint32_t sent_ms; /* when it was sent last */
+    uint32_t sent_ms;   /* when it was sent last */
+    uint32_t period_ms; /* as a host wants it; 0: as the settings say it;
+                           REPORT_OFF: only when it is asked for */
 } link_report_t;
 
 /* The frame that a transfer carries, as its handshake describes it. */
 typedef struct {
     uint32_t size; /* bytes */
     uint16_t width, height;
-    uint8_t type; /* MAVLINK_DATA_STREAM_TYPE */
+    uint8_t type;   /* MAVLINK_DATA_STREAM_TYPE */
+    uint8_t number; /* of a snapshot, 1 to 255; 0 of an injected frame */
 } link_image_t;
 
 typedef enum {
     SNAPSHOT_NONE,
     SNAPSHOT_WANTED,  /* waits for the camera's next good frame */
+    SNAPSHOT_KEPT,    /* was sent, and is in the board's buffer yet */
     SNAPSHOT_TAKEN,   /* in the board's buffer; its handshake is due */
-    SNAPSHOT_SENDING, /* its packets are due from `next` on */
+    SNAPSHOT_SENDING, /* its packets are due from `next` to before `end` */
 } snapshot_state_t;
 
 /* link_snapshot.c: a frame of the camera on its way out. */
 typedef struct {
     snapshot_state_t state;
-    link_image_t image;
-    uint16_t next;
+    link_image_t image; /* of the newest snapshot */
+    uint16_t next, end;
+    uint32_t asked_ms; /* when a host wanted one */
 } link_snapshot_t;
 
 typedef enum {
@@ -93,11 +102,28 @@ typedef struct {
     uint32_t heard_ms; /* when the host's last handshake or packet came */
 } link_injection_t;
 
+/* Which parameters are to be sent, and whose turn it is. */
 typedef struct {
-    receiver_t receiver;     /* link.c */
-    uint8_t sequence;        /* link.c: number of the next message out */
-    uint32_t faults;         /* link_count_fault: messages refused */
-    uint32_t parameters_due; /* link_parameters.c: a bit each, to be sent */
+    uint32_t due; /* a bit each */
+    uint8_t next;
+} link_turn_t;
+
+/* link_typed.c: the extended parameter protocol. */
+typedef struct {
+    link_turn_t values;
+    link_turn_t answers; /* to PARAM_EXT_SET */
+    uint32_t refused;    /* a bit each: what the answer says */
+} link_typed_t;
+
+typedef struct {
+    uint8_t system;         /* dock.c: MAVLink's, until the next start */
+    receiver_t receiver;    /* link.c */
+    uint8_t sequence;       /* link.c: number of the next message out */
+    uint32_t faults;        /* link_count_fault: messages refused */
+    link_turn_t parameters; /* link_parameters.c: values to be sent */
+    link_typed_t typed;
+    uint16_t interval_of; /* link_reports.c: the message whose interval a
+                             host wants to know */
     link_texts_t texts;
     link_acks_t acks;
     link_report_t reports[REPORTS];

@@ -10,15 +10,23 @@ void link_acknowledge(link_t *link, const link_ack_t *ack)
         acks->waiting[acks->count++] = *ack;
 }
 
+/* Where several hosts wait for the same save, its answer goes to all. */
 void link_answer_save_later(link_t *link, const link_ack_t *ack)
 {
-    link->acks.save = *ack;
+    link_ack_t *save = &link->acks.save;
+    const bool another =
+        save->command != 0 &&
+        (save->system != ack->system || save->component != ack->component);
+    *save = *ack;
+    if (another)
+        save->system = save->component = 0;
 }
 
 void link_answer_save(link_t *link, bool written)
 {
     link->acks.save.result = written ? MAV_RESULT_ACCEPTED : MAV_RESULT_FAILED;
     link_acknowledge(link, &link->acks.save);
+    link->acks.save.command = 0;
 }
 
 bool link_has_answered(const link_t *link)
@@ -36,6 +44,8 @@ bool link_send_acks(dock_t *dock, sender_t *sender, uint32_t now_ms)
         memset(&answer, 0, sizeof answer);
         answer.command = ack->command;
         answer.result = ack->result;
+        if (ack->result == MAV_RESULT_IN_PROGRESS)
+            answer.progress = UINT8_MAX; /* how far is not known */
         answer.target_system = ack->system;
         answer.target_component = ack->component;
         if (!MESSAGE_SEND(sender, COMMAND_ACK, &answer))

@@ -1,81 +1,28 @@
 #include <string.h>
 
-#include "link_parts.h"
-#include "parameter_table.h"
+#include "link_order.h"
 #include "real32.h"
 
 #define SIGN (UINT32_C(1) << 31) /* alone: minus zero */
 
-/* An argument that is a whole number, 0 or more; -1 for any other. */
-static int64_t whole(const float *argument)
+int64_t order_whole(const order_t *order, int argument)
 {
-    uint32_t bits;
+    const uint32_t bits = order->argument[argument];
     int64_t n;
-    memcpy(&bits, argument, sizeof bits);
     return real32_to_fixed(bits, 0, &n) && n >= 0 &&
                    real32_from_fixed(n, 0) == (bits == SIGN ? 0 : bits)
                ? n
                : -1;
 }
 
-/* A hue in degrees, 0..360, as hue steps; -1 for anything else. */
-static int32_t hue_of_degrees(const float *argument)
+static uint8_t store(dock_t *dock, const order_t *order)
 {
-    uint32_t bits;
-    int32_t hue;
-    memcpy(&bits, argument, sizeof bits);
-    if (!parameter_from_real32(&PARAMETERS[PARAMETER_LED_HUE], bits, &hue) ||
-        hue < 0 || hue > METHOD_HUE_RANGE)
-        return -1;
-    return hue % METHOD_HUE_RANGE;
-}
-
-static uint8_t show_hue(lamps_t *lamps, const mavlink_command_long_t *command)
-{
-    const int32_t hue = hue_of_degrees(&command->param2);
-    if (hue < 0)
-        return MAV_RESULT_DENIED;
-    lamps_show_hue(lamps, (uint16_t)hue);
-    return MAV_RESULT_ACCEPTED;
-}
-
-static uint8_t show_raw(lamps_t *lamps, const mavlink_command_long_t *command)
-{
-    const int64_t rgb[3] = {whole(&command->param2), whole(&command->param3),
-                            whole(&command->param4)};
-    uint8_t raw[3];
-    for (int i = 0; i < 3; i++) {
-        if (rgb[i] < 0 || rgb[i] > 255)
-            return MAV_RESULT_DENIED;
-        raw[i] = (uint8_t)rgb[i];
-    }
-    lamps_show_raw(lamps, raw);
-    return MAV_RESULT_ACCEPTED;
-}
-
-static uint8_t set_leds(lamps_t *lamps, const mavlink_command_long_t *command)
-{
-    switch (whole(&command->param1)) {
-    case DOCK_LED_AUTO:
-        lamps_show_marker(lamps);
-        return MAV_RESULT_ACCEPTED;
-    case DOCK_LED_HUE:
-        return show_hue(lamps, command);
-    case DOCK_LED_RAW:
-        return show_raw(lamps, command);
-    default:
-        return MAV_RESULT_DENIED;
-    }
-}
-
-static uint8_t store(dock_t *dock, const mavlink_command_long_t *command,
-                     const link_ack_t *ack)
-{
-    switch (whole(&command->param1)) {
+    const link_ack_t later = {order->command, MAV_RESULT_FAILED, order->system,
+                              order->component};
+    switch (order_whole(order, 0)) {
     case 1: /* write */
-        if (!requests_save(&dock->requests))
-            return MAV_RESULT_TEMPORARILY_REJECTED;
-        link_answer_save_later(&dock->link, ack);
+        requests_save(&dock->requests);
+        link_answer_save_later(&dock->link, &later);
         return MAV_RESULT_IN_PROGRESS;
     case 2: /* back to the defaults; not yet in flash */
         link_reset_parameters(dock);
@@ -85,71 +32,93 @@ static uint8_t store(dock_t *dock, const mavlink_command_long_t *command,
     }
 }
 
-static uint8_t reboot(dock_t *dock, const mavlink_command_long_t *command)
+static uint8_t reboot(dock_t *dock, const order_t *order)
 {
-    if (whole(&command->param1) != 1)
+    if (order_whole(order, 0) != 1)
         return MAV_RESULT_DENIED;
     requests_reboot(&dock->requests);
     return MAV_RESULT_ACCEPTED;
 }
 
-static uint8_t request_message(dock_t *dock,
-                               const mavlink_command_long_t *command)
+/* A new one, or packets of the last one again. */
+static uint8_t snapshot(dock_t *dock, const order_t *order)
 {
-    switch (whole(&command->param1)) {
-    case MAVLINK_MSG_ID_AUTOPILOT_VERSION:
-        link_ask_for_report(&dock->link, REPORT_VERSION);
-        return MAV_RESULT_ACCEPTED;
-    case MAVLINK_MSG_ID_DOCK_STATUS:
-        link_ask_for_report(&dock->link, REPORT_STATUS);
-        return MAV_RESULT_ACCEPTED;
-    default:
-        return MAV_RESULT_DENIED;
-    }
-}
-
-static uint8_t snapshot(dock_t *dock)
-{
+    const int64_t number = order_whole(order, 0);
     if (dock->board.buffer == NULL)
         return MAV_RESULT_UNSUPPORTED;
-    return link_want_snapshot(dock) ? MAV_RESULT_ACCEPTED
-                                    : MAV_RESULT_TEMPORARILY_REJECTED;
+    if (number > 0)
+        return link_repeat_snapshot(&dock->link, number, order_whole(order, 1),
+                                    order_whole(order, 2))
+                   ? MAV_RESULT_ACCEPTED
+                   : MAV_RESULT_DENIED;
+    return link_want_snapshot(&dock->link, order->now_ms)
+               ? MAV_RESULT_ACCEPTED
+               : MAV_RESULT_TEMPORARILY_REJECTED;
 }
 
-static uint8_t obey(dock_t *dock, const mavlink_command_long_t *command,
-                    const link_ack_t *ack)
-{
-    switch (command->command) {
-    case MAV_CMD_DOCK_LED:
-        return set_leds(&dock->lamps, command);
-    case MAV_CMD_DOCK_SNAPSHOT:
-        return snapshot(dock);
-    case MAV_CMD_PREFLIGHT_STORAGE:
-        return store(dock, command, ack);
-    case MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN:
-        return reboot(dock, command);
-    case MAV_CMD_REQUEST_MESSAGE:
-        return request_message(dock, command);
-    case MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
-        link_ask_for_report(&dock->link, REPORT_VERSION);
-        return MAV_RESULT_ACCEPTED;
-    default:
-        return MAV_RESULT_UNSUPPORTED;
-    }
-}
+static const struct {
+    uint16_t command;
+    bool to_all; /* changes nothing: answered too where every system is asked */
+    link_obey_t *obey;
+} orders[] = {
+    {MAV_CMD_DOCK_LED, false, link_obey_led},
+    {MAV_CMD_DOCK_SNAPSHOT, false, snapshot},
+    {MAV_CMD_PREFLIGHT_STORAGE, false, store},
+    {MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, false, reboot},
+    {MAV_CMD_REQUEST_MESSAGE, true, link_obey_request_message},
+    {MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, true, link_obey_request_version},
+    {MAV_CMD_SET_MESSAGE_INTERVAL, false, link_obey_set_interval},
+    {MAV_CMD_GET_MESSAGE_INTERVAL, true, link_obey_get_interval},
+};
 
-void link_on_command(dock_t *dock, const received_t *message, uint32_t now_ms)
+#define ORDERS (sizeof orders / sizeof orders[0])
+
+static void obey(dock_t *dock, const order_t *order, bool to_all)
 {
-    (void)now_ms;
-    mavlink_command_long_t command;
-    message_read(&command, sizeof command, message);
-    if (!link_is_for_us(command.target_system, command.target_component))
+    link_ack_t ack = {order->command, MAV_RESULT_UNSUPPORTED, order->system,
+                      order->component};
+    size_t i = 0;
+    while (i < ORDERS && orders[i].command != order->command)
+        i++;
+    /* Of a command to everybody the vehicle does its part, and says so. */
+    if (to_all && (i == ORDERS || !orders[i].to_all))
         return;
-    link_ack_t ack = {command.command, MAV_RESULT_ACCEPTED, message->system,
-                      message->component};
-    ack.result = obey(dock, &command, &ack);
+    if (i < ORDERS)
+        ack.result = orders[i].obey(dock, order);
     if (ack.result == MAV_RESULT_DENIED)
         link_count_fault(&dock->link);
-    if (ack.result != MAV_RESULT_IN_PROGRESS) /* that one is answered later */
-        link_acknowledge(&dock->link, &ack);
+    link_acknowledge(&dock->link, &ack);
+}
+
+/* The four arguments come first in either message. */
+static order_t order_of(uint16_t command, const void *arguments,
+                        const received_t *message, uint32_t now_ms)
+{
+    order_t order = {.command = command,
+                     .system = message->system,
+                     .component = message->component,
+                     .now_ms = now_ms};
+    memcpy(order.argument, arguments, sizeof order.argument);
+    return order;
+}
+
+void link_on_command_long(dock_t *dock, const received_t *message,
+                          uint32_t now_ms)
+{
+    mavlink_command_long_t c;
+    message_read(&c, sizeof c, message);
+    const order_t order = order_of(c.command, &c, message, now_ms);
+    if (link_is_for_us(&dock->link, c.target_system, c.target_component))
+        obey(dock, &order, c.target_system == 0);
+}
+
+/* The place that it has besides means nothing to a dock. */
+void link_on_command_int(dock_t *dock, const received_t *message,
+                         uint32_t now_ms)
+{
+    mavlink_command_int_t c;
+    message_read(&c, sizeof c, message);
+    const order_t order = order_of(c.command, &c, message, now_ms);
+    if (link_is_for_us(&dock->link, c.target_system, c.target_component))
+        obey(dock, &order, c.target_system == 0);
 }

@@ -17,5 +17,6 @@ bool link_send_handshake(sender_t *sender, const link_image_t *image)
     h.packets = link_packets_of(image->size);
     h.type = image->type;
     h.payload = PACKET;
+    h.jpg_quality = image->number; /* a field that raw images leave unused */
     return MESSAGE_SEND(sender, DATA_TRANSMISSION_HANDSHAKE, &h);
 }

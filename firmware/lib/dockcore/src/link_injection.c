@@ -58,23 +58,26 @@ void link_on_handshake(dock_t *dock, const received_t *message, uint32_t now_ms)
         link->injection.state = INJECTION_OFF;
         return;
     }
-    if (link_holds_snapshot(link)) { /* in the one buffer that there is */
+    frame_format_t format;
+    if (!format_of_type(h.type, &format))
+        return; /* another camera's, to somebody else */
+    if (link_is_sending_snapshot(link)) { /* in the one buffer that there is */
         refuse(link, "injection refused: a snapshot is being sent");
         return;
     }
-    frame_format_t format;
-    if (!format_of_type(h.type, &format) || h.size > dock->board.capacity ||
-        h.packets != link_packets_of(h.size) || h.payload != PACKET) {
+    if (h.size > dock->board.capacity || h.packets != link_packets_of(h.size) ||
+        h.payload != PACKET) {
         refuse(link, "injection refused: size or format");
         return;
     }
-    const link_image_t image = {h.size, h.width, h.height, h.type};
+    const link_image_t image = {h.size, h.width, h.height, h.type, 0};
     const frame_t frame = injected_frame(dock, &image);
     if (!frame_is_valid(&frame)) {
         refuse(link, "injection refused: length does not fit the size");
         decision_refuse(&dock->decision);
         return;
     }
+    link_forget_snapshot(link);
     link->injection = (link_injection_t){INJECTION_ANNOUNCED, image, 0, now_ms};
 }
 

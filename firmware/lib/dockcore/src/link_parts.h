@@ -37,13 +37,33 @@ bool link_has_answered(const link_t *link); /* every command but a save */
 link_sender_t link_send_acks;
 
 /* link_commands.c */
-link_handler_t link_on_command;
+link_handler_t link_on_command_long, link_on_command_int;
+
+/* link_settings.c: both return an index, or say that there is none: -1. */
+int link_find_parameter(link_t *link, const char name[16]);
+int link_asked_parameter(link_t *link, int16_t index, const char name[16]);
+bool link_set_parameter(dock_t *dock, int index, uint32_t real32); /* or says
+                                                        why it does not */
+void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
 
 /* link_parameters.c */
+typedef bool link_send_one_t(const dock_t *dock, uint16_t index,
+                             sender_t *sender);
 link_handler_t link_on_parameter_list, link_on_parameter_read,
     link_on_parameter_set;
-void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
 link_sender_t link_send_parameters;
+void link_list_parameters(link_t *link); /* all are to be sent */
+void link_turn_all(link_turn_t *turn);
+void link_turn_one(link_turn_t *turn, int index);
+bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
+                       link_send_one_t *send_one);
+/* An integer of a MAV_PARAM_TYPE that begins with these bytes, as bits of an
+ * IEEE 754 number; not a number for the other types. */
+uint32_t link_integer_of(uint32_t bits, uint8_t type);
+
+/* link_typed.c */
+link_handler_t link_on_typed_list, link_on_typed_read, link_on_typed_set;
+link_sender_t link_send_typed;
 
 /* link_images.c: what snapshots and injected frames have in common. */
 #define PACKET MAVLINK_MSG_ENCAPSULATED_DATA_FIELD_DATA_LEN
@@ -51,9 +71,14 @@ uint16_t link_packets_of(uint32_t size);
 bool link_send_handshake(sender_t *sender, const link_image_t *image);
 
 /* link_snapshot.c */
-bool link_want_snapshot(dock_t *dock);        /* false: not now */
-bool link_holds_snapshot(const link_t *link); /* the buffer is in use */
-void link_take_snapshot(dock_t *dock, const frame_t *frame); /* if wanted */
+bool link_want_snapshot(link_t *link, uint32_t now_ms); /* false: not now */
+bool link_repeat_snapshot(link_t *link, int64_t number, int64_t first,
+                          int64_t count); /* false: there is no such packet */
+void link_expire_snapshot(link_t *link, uint32_t now_ms); /* a wish */
+bool link_is_sending_snapshot(const link_t *link);
+void link_forget_snapshot(link_t *link); /* the buffer is taken for another */
+void link_take_snapshot(dock_t *dock, const frame_t *frame,
+                        uint32_t now_ms); /* if one is wanted */
 link_sender_t link_send_snapshot;
 
 /* link_injection.c */
@@ -63,7 +88,10 @@ bool link_injection_lasts(link_t *link, uint32_t now_ms); /* or ends it */
 link_sender_t link_send_echo;
 
 /* link_reports.c */
+int link_report_of(int64_t id); /* a report_t; -1 for another message */
 void link_ask_for_report(link_t *link, report_t report);
+void link_ask_for_interval(link_t *link, uint16_t id);
+void link_set_period(link_t *link, report_t report, uint32_t period_ms);
 link_sender_t link_send_reports;
 
 static inline void link_count_fault(link_t *link)
@@ -71,11 +99,20 @@ static inline void link_count_fault(link_t *link)
     link->faults++;
 }
 
-/* True for a message to this dock or to all. */
-static inline bool link_is_for_us(uint8_t system, uint8_t component)
+/* True for a message to this dock, or to a component of every system. */
+static inline bool link_is_for_us(const link_t *link, uint8_t system,
+                                  uint8_t component)
 {
-    return (system == DOCK_ID_SYSTEM || system == 0) &&
+    return (system == link->system || system == 0) &&
            (component == DOCK_ID_COMPONENT || component == 0);
+}
+
+/* True for a message to this dock, not to every system: one that changes
+ * something. */
+static inline bool link_is_for_this(const link_t *link, uint8_t system,
+                                    uint8_t component)
+{
+    return system != 0 && link_is_for_us(link, system, component);
 }
 
 #endif

@@ -38,9 +38,11 @@ static bool send_version(dock_t *dock, sender_t *sender, uint32_t now_ms)
     mavlink_autopilot_version_t version;
     memset(&version, 0, sizeof version);
     version.capabilities = MAV_PROTOCOL_CAPABILITY_MAVLINK2 |
+                           MAV_PROTOCOL_CAPABILITY_COMMAND_INT |
                            MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST;
     const uint64_t digest = METHOD_DIGEST;
     memcpy(version.middleware_custom_version, &digest, sizeof digest);
+    version.uid = dock->board.uid;
     memcpy(version.flight_custom_version, dock->board.git_hash,
            sizeof version.flight_custom_version);
     return MESSAGE_SEND(sender, AUTOPILOT_VERSION, &version);
@@ -98,18 +100,14 @@ static bool send_status(dock_t *dock, sender_t *sender, uint32_t now_ms)
     return MESSAGE_SEND(sender, DOCK_STATUS, &status);
 }
 
-/* In the order in which they go out. */
-static link_sender_t *const send[REPORTS] = {
-    [REPORT_HEARTBEAT] = send_heartbeat,
-    [REPORT_VERSION] = send_version,
-    [REPORT_STATUS] = send_status,
-};
-
 /* Milliseconds from one to the next; 0 for one that is sent only when a host
  * asks for it. */
 static uint32_t period_ms(const dock_t *dock, int report)
 {
+    const uint32_t wanted = dock->link.reports[report].period_ms;
     const uint32_t hertz = dock->settings.report_hz;
+    if (wanted != 0)
+        return wanted == REPORT_OFF ? 0 : wanted;
     switch (report) {
     case REPORT_HEARTBEAT:
         return HEARTBEAT_MS;
@@ -118,6 +116,39 @@ static uint32_t period_ms(const dock_t *dock, int report)
     default:
         return 0;
     }
+}
+
+static bool send_interval(dock_t *dock, sender_t *sender, uint32_t now_ms)
+{
+    (void)now_ms;
+    const int report = link_report_of(dock->link.interval_of);
+    mavlink_message_interval_t interval;
+    memset(&interval, 0, sizeof interval);
+    interval.message_id = dock->link.interval_of;
+    if (report >= 0) { /* 0 says that the dock does not send it */
+        const uint32_t period = period_ms(dock, report);
+        interval.interval_us = period == 0 ? -1 : (int32_t)(1000 * period);
+    }
+    return MESSAGE_SEND(sender, MESSAGE_INTERVAL, &interval);
+}
+
+/* In the order in which they go out. */
+static const struct {
+    uint32_t id;
+    link_sender_t *send;
+} reports[REPORTS] = {
+    [REPORT_HEARTBEAT] = {MAVLINK_MSG_ID_HEARTBEAT, send_heartbeat},
+    [REPORT_VERSION] = {MAVLINK_MSG_ID_AUTOPILOT_VERSION, send_version},
+    [REPORT_STATUS] = {MAVLINK_MSG_ID_DOCK_STATUS, send_status},
+    [REPORT_INTERVAL] = {MAVLINK_MSG_ID_MESSAGE_INTERVAL, send_interval},
+};
+
+int link_report_of(int64_t id)
+{
+    for (int i = 0; i < REPORTS; i++)
+        if (reports[i].id == id)
+            return i;
+    return -1;
 }
 
 static bool is_due(const dock_t *dock, int report, uint32_t now_ms)
@@ -140,15 +171,28 @@ void link_ask_for_report(link_t *link, report_t report)
     link->reports[report].state = REPORT_DUE;
 }
 
+void link_ask_for_interval(link_t *link, uint16_t id)
+{
+    link->interval_of = id;
+    link_ask_for_report(link, REPORT_INTERVAL);
+}
+
+void link_set_period(link_t *link, report_t report, uint32_t period)
+{
+    link->reports[report].period_ms = period;
+}
+
 bool link_send_reports(dock_t *dock, sender_t *sender, uint32_t now_ms)
 {
     for (int i = 0; i < REPORTS; i++) {
+        link_report_t *report = &dock->link.reports[i];
         if (!is_due(dock, i, now_ms))
             continue;
-        dock->link.reports[i].state = REPORT_DUE;
-        if (!send[i](dock, sender, now_ms))
+        report->state = REPORT_DUE;
+        if (!reports[i].send(dock, sender, now_ms))
             return false;
-        dock->link.reports[i] = (link_report_t){REPORT_SENT, now_ms};
+        report->state = REPORT_SENT;
+        report->sent_ms = now_ms;
     }
     return true;
 }

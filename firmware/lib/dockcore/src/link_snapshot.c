@@ -2,23 +2,60 @@
 
 #include "link_parts.h"
 
-bool link_holds_snapshot(const link_t *link)
+/* For so long a wish waits for a frame: who asked has given up then, and a
+ * picture that nobody expects would keep others from the buffer. */
+#define WISH_MS 5000
+
+bool link_want_snapshot(link_t *link, uint32_t now_ms)
+{
+    if (link_is_injecting(link))
+        return false;
+    link->snapshot.state = SNAPSHOT_WANTED;
+    link->snapshot.asked_ms = now_ms;
+    return true;
+}
+
+bool link_repeat_snapshot(link_t *link, int64_t number, int64_t first,
+                          int64_t count)
+{
+    link_snapshot_t *snapshot = &link->snapshot;
+    if (snapshot->state < SNAPSHOT_KEPT || number != snapshot->image.number ||
+        first < 0 || count < 1 ||
+        first + count > link_packets_of(snapshot->image.size))
+        return false;
+    snapshot->next = (uint16_t)first;
+    snapshot->end = (uint16_t)(first + count);
+    if (snapshot->state == SNAPSHOT_KEPT)
+        snapshot->state = SNAPSHOT_SENDING;
+    return true;
+}
+
+bool link_is_sending_snapshot(const link_t *link)
 {
     return link->snapshot.state >= SNAPSHOT_TAKEN;
 }
 
-bool link_want_snapshot(dock_t *dock)
+void link_forget_snapshot(link_t *link)
 {
-    link_t *link = &dock->link;
-    if (link_is_injecting(link) || link_holds_snapshot(link))
-        return false;
-    link->snapshot.state = SNAPSHOT_WANTED;
-    return true;
+    if (link->snapshot.state >= SNAPSHOT_KEPT)
+        link->snapshot.state = SNAPSHOT_NONE;
 }
 
-void link_take_snapshot(dock_t *dock, const frame_t *frame)
+void link_expire_snapshot(link_t *link, uint32_t now_ms)
+{
+    link_snapshot_t *snapshot = &link->snapshot;
+    if (snapshot->state != SNAPSHOT_WANTED ||
+        now_ms - snapshot->asked_ms <= WISH_MS)
+        return;
+    snapshot->state = SNAPSHOT_NONE;
+    link_say_words(link, MAV_SEVERITY_WARNING,
+                   "no snapshot: the camera gave no frame for 5 s");
+}
+
+void link_take_snapshot(dock_t *dock, const frame_t *frame, uint32_t now_ms)
 {
     link_snapshot_t *snapshot = &dock->link.snapshot;
+    link_expire_snapshot(&dock->link, now_ms);
     if (snapshot->state != SNAPSHOT_WANTED || link_is_injecting(&dock->link))
         return;
     if (frame->length > dock->board.capacity) {
@@ -29,14 +66,16 @@ void link_take_snapshot(dock_t *dock, const frame_t *frame)
     }
     memcpy(dock->board.buffer, frame->bytes, frame->length);
     snapshot->state = SNAPSHOT_TAKEN;
-    snapshot->next = 0;
     snapshot->image = (link_image_t){
         .size = (uint32_t)frame->length,
         .width = frame->width,
         .height = frame->height,
         .type = frame->format == FRAME_RGB888 ? MAVLINK_DATA_STREAM_IMG_RAW32U
                                               : MAVLINK_DATA_STREAM_IMG_RAW8U,
+        .number = (uint8_t)(snapshot->image.number % UINT8_MAX + 1),
     };
+    snapshot->next = 0;
+    snapshot->end = link_packets_of(snapshot->image.size);
 }
 
 static bool send_packet(const dock_t *dock, uint16_t number, sender_t *sender)
@@ -61,10 +100,9 @@ bool link_send_snapshot(dock_t *dock, sender_t *sender, uint32_t now_ms)
     }
     if (snapshot->state != SNAPSHOT_SENDING)
         return true;
-    for (; snapshot->next < link_packets_of(snapshot->image.size);
-         snapshot->next++)
+    for (; snapshot->next < snapshot->end; snapshot->next++)
         if (!send_packet(dock, snapshot->next, sender))
             return false;
-    snapshot->state = SNAPSHOT_NONE;
+    snapshot->state = SNAPSHOT_KEPT;
     return true;
 }

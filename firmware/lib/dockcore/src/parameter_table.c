@@ -36,4 +36,5 @@ const parameter_t PARAMETERS[PARAMETER_COUNT] = {
     {"LED_LIMIT_DARK", FIELD(led.dark_limit), 0, 255, 255, 1, 0},
     {"DECISION_MS", FIELD(decision_ms), 0, 10000, 0, 1, 0},
     {"LINK_BAUD", FIELD(link_baud), 9600, 921600, 921600, 1, 0},
+    {"SYSTEM_ID", FIELD(system_id), 1, 254, 50, 1, 0},
 };

@@ -1,11 +1,9 @@
 #include "requests.h"
 
-bool requests_save(requests_t *requests)
+void requests_save(requests_t *requests)
 {
-    if (requests->save != SAVE_NONE)
-        return false;
-    requests->save = SAVE_WANTED;
-    return true;
+    if (requests->save == SAVE_NONE)
+        requests->save = SAVE_WANTED;
 }
 
 void requests_camera(requests_t *requests)

@@ -27,9 +27,9 @@ typedef struct {
     bool failed; /* whether the last save did not reach the flash */
 } requests_t;
 
-/* Asks for the settings to be written.  Returns false where that was asked
- * before and is not done yet. */
-bool requests_save(requests_t *requests);
+/* Asks for the settings to be written.  Asked again before that is done, it is
+ * the same save. */
+void requests_save(requests_t *requests);
 
 void requests_camera(requests_t *requests);
 

@@ -25,6 +25,7 @@ typedef struct {
     uint8_t report_hz;
     uint16_t decision_ms; /* at least, from one to the next; 0: every frame */
     uint32_t link_baud;   /* from the next start on */
+    uint8_t system_id;    /* MAVLink's, from the next start on */
 } dock_settings_t;
 
 dock_settings_t dock_default_settings(void);

@@ -48,8 +48,7 @@ extern const uint16_t METHOD_GAMMA[1024];
 extern const uint16_t METHOD_MARKER_HUE[147];
 extern const uint32_t METHOD_HUE_DIVISION_180[256];
 extern const uint32_t METHOD_HUE_DIVISION_256[256];
-extern const uint32_t METHOD_MEAN_RED[125];
+extern const uint32_t METHOD_MEAN_RED_OR_BLUE[125];
 extern const uint32_t METHOD_MEAN_GREEN[253];
-extern const uint32_t METHOD_MEAN_BLUE[125];
 
 #endif

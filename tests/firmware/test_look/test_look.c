@@ -248,6 +248,23 @@ static void test_a_camera_too_slow_for_looks_follows_the_water_by_day(void)
     TEST_ASSERT_UINT32_WITHIN(25, 257, degrees());
 }
 
+static void test_a_camera_too_slow_for_looks_sees_night_and_day(void)
+{
+    start(METHOD_MAPPING_TERNARY);
+    set_scene(blue_water, 0.05);
+    for (const uint32_t end = now + 60000; now < end;)
+        turn(300);
+    TEST_ASSERT_UINT32_WITHIN(15, 325, degrees());
+    set_scene(dark_water, 0.04);
+    for (const uint32_t end = now + 120000; now < end;)
+        turn(300);
+    TEST_ASSERT_EQUAL_UINT32(120, degrees());
+    set_scene(blue_water, 0.04);
+    for (const uint32_t end = now + 120000; now < end;)
+        turn(300);
+    TEST_ASSERT_UINT32_WITHIN(15, 325, degrees());
+}
+
 static void test_a_lamp_that_passes_at_night_changes_nothing(void)
 {
     static const double lit[3] = {0.03, 0.05, 0.045};
@@ -262,6 +279,24 @@ static void test_a_lamp_that_passes_at_night_changes_nothing(void)
     }
     set_scene(dark_water, 0);
     assert_steady(60);
+}
+
+static void test_a_lamp_that_passes_at_dawn_is_not_taken_for_the_water(void)
+{
+    static const double dawn[3] = {0.001, 0.006, 0.012};
+    static const double lit[3] = {0.04, 0.05, 0.02};
+    start(METHOD_MAPPING_TERNARY);
+    set_scene(dark_water, 0);
+    run(60);
+    set_scene(dawn, 0);
+    run(20);
+    TEST_ASSERT_EQUAL_UINT32(120, degrees()); /* it waits */
+    set_scene(lit, 0);
+    run(20);
+    TEST_ASSERT_EQUAL_UINT32(120, degrees());
+    set_scene(dawn, 0);
+    run(60);
+    TEST_ASSERT_UINT32_WITHIN(12, 325, degrees());
 }
 
 static void test_at_dawn_the_hue_of_the_water_comes_back(void)
@@ -301,7 +336,9 @@ static void run_tests(void)
     RUN_TEST(test_a_look_without_a_frame_ends_before_a_fifth_of_a_second);
     RUN_TEST(test_a_camera_too_slow_for_looks_leaves_the_fallback);
     RUN_TEST(test_a_camera_too_slow_for_looks_follows_the_water_by_day);
+    RUN_TEST(test_a_camera_too_slow_for_looks_sees_night_and_day);
     RUN_TEST(test_a_lamp_that_passes_at_night_changes_nothing);
+    RUN_TEST(test_a_lamp_that_passes_at_dawn_is_not_taken_for_the_water);
     RUN_TEST(test_at_dawn_the_hue_of_the_water_comes_back);
     RUN_TEST(test_lamps_that_show_something_else_do_not_go_out);
 }

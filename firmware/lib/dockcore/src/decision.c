@@ -57,19 +57,23 @@ bool decision_is_dim(const decision_t *decision)
     return decision->decided && decision->water_value < DECISION_DIM_VALUE;
 }
 
+/* Whether what was seen has nearly this value of the water and this marker. */
+static bool is_near(const decision_t *decision, int value, uint16_t hue)
+{
+    const int brighter = decision->background.value - value;
+    const int most = LIKE_VALUE(value);
+    return brighter <= most && -brighter <= most &&
+           hue_distance(decision->decided_hue, hue) <= LIKE_HUE;
+}
+
 /* Whether what was seen goes with what was taken before. */
 static bool is_like(const decision_t *decision)
 {
-    const background_t *seen = &decision->background;
-    if (!decision->decided || seen->meaningful != decision->steady.meaningful)
+    const bool meaningful = decision->background.meaningful;
+    if (!decision->decided || meaningful != decision->steady.meaningful)
         return false;
-    if (!decision_is_dim(decision) || !seen->meaningful)
-        return true;
-    const int brighter = seen->value - decision->water_value;
-    const int most = LIKE_VALUE(decision->water_value);
-    return brighter <= most && -brighter <= most &&
-           hue_distance(decision->decided_hue, decision->steady.shown) <=
-               LIKE_HUE;
+    return !decision_is_dim(decision) || !meaningful ||
+           is_near(decision, decision->water_value, decision->steady.shown);
 }
 
 static void take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
@@ -81,11 +85,24 @@ static void take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
                 decision->decided_hue, window_ms, now_ms);
 }
 
+/* In dim water what is to be taken must have stayed the same while it waited:
+ * else it would be the lamp that passes when the wait is over. */
+static void wait_for_more(decision_t *decision, uint32_t now_ms)
+{
+    if (is_near(decision, decision->other_value, decision->other_hue))
+        return;
+    steady_wait(&decision->steady, now_ms);
+    decision->other_value = decision->background.value;
+    decision->other_hue = decision->decided_hue;
+}
+
 bool decision_take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
 {
-    const uint32_t hold_ms =
-        decision_is_dim(decision) ? DIM_HOLD_MS : METHOD_HOLD_MS;
-    if (!steady_takes(&decision->steady, is_like(decision), hold_ms, now_ms))
+    const bool like = is_like(decision), dim = decision_is_dim(decision);
+    if (!like && dim)
+        wait_for_more(decision, now_ms);
+    if (!steady_takes(&decision->steady, like,
+                      dim ? DIM_HOLD_MS : METHOD_HOLD_MS, now_ms))
         return false;
     take(decision, window_ms, now_ms);
     return true;

@@ -27,9 +27,11 @@ typedef struct {
     uint16_t decided_hue; /* of the last good frame alone */
     uint16_t water_hue;   /* of the last frame that was taken */
     uint8_t water_value;
-    bool decided;             /* whether a frame was taken yet */
-    bool refused;             /* whether the last frame was not valid */
-    uint32_t frames;          /* decided on; stays at UINT32_MAX */
+    uint8_t other_value; /* of water that is unlike it and waits to be taken */
+    uint16_t other_hue;  /* of the marker there */
+    bool decided;        /* whether a frame was taken yet */
+    bool refused;        /* whether the last frame was not valid */
+    uint32_t frames;     /* decided on; stays at UINT32_MAX */
     uint32_t frame_faults;    /* frames refused; stays at UINT32_MAX */
     uint32_t last_frame_ms;   /* when the last good frame came */
     uint32_t frame_period_q8; /* mean time between frames in units of 1/256 ms;

@@ -160,7 +160,6 @@ void look_frame(look_t *look, decision_t *decision,
     else if (look->clear && !look->unlit.known)
         decision_take(decision, settings->window_ms, now_ms);
     /* Right after a frame, or that frame would be lost to the look. */
-    if (look->state == LOOK_LIT && follows &&
-        now_ms - look->since_ms >= look->pause_ms)
+    if (look->state == LOOK_LIT && now_ms - look->since_ms >= look->pause_ms)
         look->due = true;
 }

@@ -29,6 +29,11 @@ bool steady_takes(steady_t *steady, bool like, uint32_t hold_ms,
     return true;
 }
 
+void steady_wait(steady_t *steady, uint32_t now_ms)
+{
+    steady->agreed_ms = now_ms;
+}
+
 void steady_take(steady_t *steady, bool meaningful, uint16_t hue,
                  uint32_t window_ms, uint32_t now_ms)
 {

@@ -100,6 +100,11 @@ def entries() -> dict[str, bytes]:
         message(PACKET, PLAUSIBLE, bytes([0, 0, *[n] * 250])) for n in (10, 80, 200, 30)
     )
     announced = message(HANDSHAKE, PLAUSIBLE | ALONE, bytes([1, 31, 9, 0]))
+    tunnel = mavlink.MAVLink_tunnel_message(1, 1, 0, 45, [*limit.ljust(128, b"\0")])
+    request_list = mavlink.MAVLink_param_request_list_message(*DOCK)
+    list_1 = host.pack_1(request_list)
+    typed = b"\x32\1LED_LIMIT" + bytes(7) + b"\x80" + bytes(127)
+    interval = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
     snapshot = message(COMMAND, PLAUSIBLE, bytes([0] * 28 + [1, 0]))
     return {
         "list": raw(listing) + send(100) + send(),
@@ -147,24 +152,20 @@ def entries() -> dict[str, bytes]:
         "signed": raw(signed.set("LED_LIMIT", 7)) + raw(signed.command(led, 2, 1, 2, 3)) + send(),
         "noise": raw(text + limit + text) + wait(201) + raw(limit[:20]) + raw(limit) + wait(201)
         + raw(b"\xfd" * 280) + raw(limit) + bytes([FLUSH]) + send(),
-        "carried": raw(
-            host.pack(mavlink.MAVLink_tunnel_message(1, 1, 0, 45, [*limit, *[0] * (128 - len(limit))]))
-        )
-        + bytes([FLUSH]) + send() + raw(b"\xfd\x23\0\0\1\1\1\x0c\x2b\0" + limit + b"\0\0" + read)
-        + send(),
-        "version_1": raw(host.pack_1(mavlink.MAVLink_param_request_list_message(*DOCK)))
-        + raw(host.pack_1(mavlink.MAVLink_param_request_list_message(*DOCK))[:5]) + raw(read) + send(),
+        "carried": raw(host.pack(tunnel)) + bytes([FLUSH]) + send()
+        + raw(b"\xfd\x23\0\0\1\1\1\x0c\x2b\0" + limit + b"\0\0" + read) + send(),
+        "version_1": raw(list_1) + raw(list_1[:5]) + raw(read) + send(),
         "integers": b"".join(raw(host.integer(*three)) + send() for three in (
-            ("LED_LIMIT", 128, 6), ("CAM_GAIN", -1, 2), ("CAM_GAIN", 0xFF, 2), ("WINDOW_MS", 1500, 3),
-            ("LED_LIMIT", 128, 9), ("LINK_BAUD", 9600, 5),
+            ("LED_LIMIT", 128, 6), ("CAM_GAIN", -1, 2), ("CAM_GAIN", 0xFF, 2),
+            ("WINDOW_MS", 1500, 3), ("LED_LIMIT", 128, 9), ("LINK_BAUD", 9600, 5),
         )),
-        "typed": message(TYPED_LIST, 0, b"\x32\1") + send(200) + message(TYPED_READ, 0, b"\3\0\x32\1")
-        + message(TYPED_SET, 0, b"\x32\1LED_LIMIT" + bytes(7) + b"\x80" + bytes(127) + b"\6") + send()
-        + message(TYPED_SET, 0, b"\x32\1LED_LIMIT" + bytes(7) + b"\x80" + bytes(127) + b"\x0b") + send(),
+        "typed": message(TYPED_LIST, 0, b"\x32\1") + send(200)
+        + message(TYPED_READ, 0, b"\3\0\x32\1") + message(TYPED_SET, 0, typed + b"\6") + send()
+        + message(TYPED_SET, 0, typed + b"\x0b") + send(),
         "place": message(PLACE, 0, b"\0\0\0\x40" + bytes(24) + b"\x9c\x7c") + send(),
-        "intervals": raw(host.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, 42500, 1e5)) + wait(100)
-        + send() + raw(host.command(mavlink.MAV_CMD_GET_MESSAGE_INTERVAL, 42500)) + send()
-        + raw(host.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, 0, -1)) + send(),
+        "intervals": raw(host.command(interval, 42500, 1e5)) + wait(100) + send()
+        + raw(host.command(mavlink.MAV_CMD_GET_MESSAGE_INTERVAL, 42500)) + send()
+        + raw(host.command(interval, 0, -1)) + send(),
         "snapshot_again": snapshot + frame(0, 1, 2, 3) + send()
         + raw(host.command(mavlink.MAV_CMD_DOCK_SNAPSHOT, 1, 0, 1)) + send(300) + send()
         + snapshot + wait(5001) + frame(0, 1, 2, 3) + send(),

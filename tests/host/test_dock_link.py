@@ -161,8 +161,10 @@ def test_a_save_that_takes_as_long_as_on_a_board_succeeds(save_s, capsys, tmp_pa
 
 def test_a_save_that_fails_after_a_while_is_said_to_fail(tmp_path):
     file = tmp_path / "missing" / "flash"
+    fails = pytest.raises(ChromadockError, match="could not")
     with running_dock(settings=file, save_s=0.6) as (url, _dock):
-        with DockClient(Connection(url)) as client, pytest.raises(ChromadockError, match="could"):
+        client = DockClient(Connection(url))
+        with client, fails:
             client.save()
 
 
@@ -173,6 +175,12 @@ def test_a_save_whose_last_answer_is_lost_is_asked_for_again():
 
     with client_of(Line(nth(done, 1))) as client:
         client.save()
+
+
+def test_a_dock_is_restarted_twice_in_a_row():
+    with running_dock() as (url, _dock), DockClient(Connection(url)) as client:
+        for _ in range(3):
+            client.reboot()
 
 
 class Both:
@@ -294,13 +302,14 @@ class Redirector:
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning:serial")
 def test_a_port_by_rfc_2217_opens_and_is_as_good_as_any():
-    with running_dock(tcp=True) as (url, _dock):
-        with contextlib.closing(Redirector(url)) as redirector:
-            url = f"rfc2217://{redirector.address}"
-            with DockClient(Connection(url)) as client:
-                assert client.version.git_hash == "simulate"
-                assert len(client.parameters()) > 20
-                assert is_water(client.snapshot())
+    with contextlib.ExitStack() as stack:
+        url, _dock = stack.enter_context(running_dock(tcp=True))
+        redirector = stack.enter_context(contextlib.closing(Redirector(url)))
+        connection = Connection(f"rfc2217://{redirector.address}")
+        client = stack.enter_context(DockClient(connection))
+        assert client.version.git_hash == "simulate"
+        assert len(client.parameters()) > 20
+        assert is_water(client.snapshot())
 
 
 def test_an_address_as_mavlink_programs_write_it_opens(capsys):

@@ -166,12 +166,18 @@ class DockClient:
             Where it refuses, or is not back within ten seconds.
         """
         before = self.status().time_boot_ms
+
+        def restarted(message: Message) -> bool:
+            # Its clock tells less if it was restarted just before.
+            if message.get_type() == "STATUSTEXT":
+                return " started, reset reason" in message.text
+            return bool(message.get_type() == "DOCK_STATUS" and message.time_boot_ms < before)
+
         command(self.messenger, _REBOOT, "reboot", _REBOOT_NOW)
         end = self.messenger.clock() + REBOOT_TIMEOUT_S
         while self.messenger.clock() < end:
             self.request_status()
-            status = self.next_status(AGAIN_S)
-            if status is not None and status.time_boot_ms < before:
+            if self.messenger.wait(restarted, AGAIN_S) is not None:
                 return
         raise self.messenger.silent("anything after its reboot")
 
@@ -231,7 +237,8 @@ def _choose(messenger: Messenger, system: int) -> None:
     if len(messenger.docks) > 1:
         systems = ", ".join(map(str, sorted(messenger.docks)))
         raise ChromadockError(
-            f"{messenger.connection.url}: several docks, systems {systems}: choose one with --system"
+            f"{messenger.connection.url}: several docks, systems {systems}: "
+            "choose one with --system"
         )
     messenger.system = system
 

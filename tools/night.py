@@ -132,7 +132,8 @@ class Lamps:
             self.dark_since = None
 
     def on_rows(self, now_s: float) -> NDArray[np.float64]:
-        """(rows, 3), or (1, 3) where all are alike: their mean over each row's exposure, of a frame that is read up to now."""
+        """Their mean over each row's exposure, of a frame that is read up to ``now_s``: (rows, 3),
+        or (1, 3) where all rows are alike."""
         period_s = PERIOD_MS / 1000
         if self.driven[-1][0] <= now_s - 2 * period_s:
             return self.driven[-1][1][None, :]
@@ -216,12 +217,15 @@ def main() -> int:
     print("water  own light  mapping     worst hue      light lost  longest dark  looks")
     bad = 0
     with multiprocessing.Pool() as pool:
-        for (_, water, own, mapping), night in zip(plans, pool.starmap(run, plans), strict=True):
+        nights = [pool.apply_async(run, plan) for plan in plans]
+        for (_, water, own, mapping), one in zip(plans, nights, strict=True):
+            night = one.get()
             bad += not night.good()
             print(
                 f"{water:5}  {100 * own:6.1f} %   {mapping:10}  {night.worst_deg:5.1f} deg "
                 f"at {night.worst_s / 3600:5.2f} h  {100 * night.lost:6.2f} %  "
-                f"{night.longest_s:8.3f} s  {night.looks:6}{'' if night.good() else '  TOO MUCH'}"
+                f"{night.longest_s:8.3f} s  {night.looks:6}{'' if night.good() else '  TOO MUCH'}",
+                flush=True,
             )
     return 1 if bad else 0
 

@@ -17,6 +17,7 @@ _FAULTS = {
     dialect.DOCK_FAULT_SETTINGS: "stored settings were corrupt",
     dialect.DOCK_FAULT_STORAGE: "settings cannot be saved",
     dialect.DOCK_FAULT_UNLOCKED: "camera not locked yet",
+    dialect.DOCK_FAULT_OWN_LIGHT: "camera sees the dock's own lamps",
 }
 _SENSORS = {
     0x26: "OV2640",

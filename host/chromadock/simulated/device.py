@@ -93,6 +93,7 @@ class SimulatedDock:
         )
         self._text = b""
         self._text_due_s = now_s
+        self._core: Any = None
         self._boot(POWER_ON, now_s)
 
     @property

@@ -299,6 +299,30 @@ static void test_a_lamp_that_passes_at_dawn_is_not_taken_for_the_water(void)
     TEST_ASSERT_UINT32_WITHIN(12, 325, degrees());
 }
 
+/* It comes on and goes off over ten seconds each, as one that comes near. */
+static void test_a_lamp_that_comes_near_at_dusk_changes_nothing(void)
+{
+    static const double dusk[3] = {0.001, 0.006, 0.012};
+    start(METHOD_MAPPING_TERNARY);
+    set_scene(dusk, 0);
+    run(120);
+    const uint16_t shown = dock_hue(&dock);
+    for (const uint32_t from = now; now - from < 20000;) {
+        const uint32_t since = now - from;
+        const double near = (since < 10000 ? since : 20000 - since) / 10000.0;
+        const double seen[3] = {dusk[0] + 0.03 * near, dusk[1] + 0.05 * near,
+                                dusk[2] + 0.045 * near};
+        set_scene(seen, 0);
+        turn(AGE);
+        TEST_ASSERT_LESS_OR_EQUAL(21, hue_distance(shown, dock_hue(&dock)));
+    }
+    set_scene(dusk, 0);
+    for (const uint32_t end = now + 120000; now < end;) {
+        turn(AGE);
+        TEST_ASSERT_LESS_OR_EQUAL(21, hue_distance(shown, dock_hue(&dock)));
+    }
+}
+
 static void test_at_dawn_the_hue_of_the_water_comes_back(void)
 {
     static const double dawn[3] = {0.003, 0.02, 0.04};
@@ -339,6 +363,7 @@ static void run_tests(void)
     RUN_TEST(test_a_camera_too_slow_for_looks_sees_night_and_day);
     RUN_TEST(test_a_lamp_that_passes_at_night_changes_nothing);
     RUN_TEST(test_a_lamp_that_passes_at_dawn_is_not_taken_for_the_water);
+    RUN_TEST(test_a_lamp_that_comes_near_at_dusk_changes_nothing);
     RUN_TEST(test_at_dawn_the_hue_of_the_water_comes_back);
     RUN_TEST(test_lamps_that_show_something_else_do_not_go_out);
 }

@@ -5,8 +5,11 @@
 #include "counter.h"
 #include "marker.h"
 
-/* In dim water, where decisions come of frames that the lamps did not light. */
 #define DIM_HOLD_MS 30000
+#define DIM_WINDOW_MS 60000
+#define DIM_SAMPLE_MS (DIM_WINDOW_MS / METHOD_WINDOW_CAPACITY)
+/* What comes on slowly, as a lamp does too, is compared with what was then. */
+#define DIM_MARK_MS 10000
 /* How far a value may be from the one before, and a hue from the one shown. */
 #define LIKE_VALUE(value) (4 + (value) / 4)
 #define LIKE_HUE (15 * METHOD_HUE_RANGE / 360)
@@ -57,13 +60,12 @@ bool decision_is_dim(const decision_t *decision)
     return decision->decided && decision->water_value < DECISION_DIM_VALUE;
 }
 
-/* Whether what was seen has nearly this value of the water and this marker. */
-static bool is_near(const decision_t *decision, int value, uint16_t hue)
+static bool is_near(const decision_t *decision, const decision_mark_t *mark)
 {
-    const int brighter = decision->background.value - value;
-    const int most = LIKE_VALUE(value);
+    const int brighter = decision->background.value - mark->value;
+    const int most = LIKE_VALUE(mark->value);
     return brighter <= most && -brighter <= most &&
-           hue_distance(decision->decided_hue, hue) <= LIKE_HUE;
+           hue_distance(decision->decided_hue, mark->hue) <= LIKE_HUE;
 }
 
 /* Whether what was seen goes with what was taken before. */
@@ -73,7 +75,7 @@ static bool is_like(const decision_t *decision)
     if (!decision->decided || meaningful != decision->steady.meaningful)
         return false;
     return !decision_is_dim(decision) || !meaningful ||
-           is_near(decision, decision->water_value, decision->steady.shown);
+           is_near(decision, &decision->held);
 }
 
 static void take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
@@ -81,30 +83,54 @@ static void take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
     decision->water_hue = decision->background.hue;
     decision->water_value = decision->background.value;
     decision->decided = true;
+    decision->sampled_ms = now_ms;
     steady_take(&decision->steady, decision->background.meaningful,
                 decision->decided_hue, window_ms, now_ms);
+}
+
+static void hold(decision_t *decision, uint32_t now_ms)
+{
+    decision->held = (decision_mark_t){decision->background.value,
+                                       decision->steady.shown, now_ms};
 }
 
 /* In dim water what is to be taken must have stayed the same while it waited:
  * else it would be the lamp that passes when the wait is over. */
 static void wait_for_more(decision_t *decision, uint32_t now_ms)
 {
-    if (is_near(decision, decision->other_value, decision->other_hue))
+    if (is_near(decision, &decision->other))
         return;
     steady_wait(&decision->steady, now_ms);
-    decision->other_value = decision->background.value;
-    decision->other_hue = decision->decided_hue;
+    decision->other = (decision_mark_t){decision->background.value,
+                                        decision->decided_hue, now_ms};
+}
+
+static bool take_dim(decision_t *decision, uint32_t now_ms)
+{
+    const bool like = is_like(decision);
+    if (!like)
+        wait_for_more(decision, now_ms);
+    if (!steady_takes(&decision->steady, like, DIM_HOLD_MS, now_ms))
+        return false;
+    if (like && now_ms - decision->sampled_ms < DIM_SAMPLE_MS) {
+        steady_wait(&decision->steady, now_ms);
+        return true;
+    }
+    take(decision, DIM_WINDOW_MS, now_ms);
+    if (!like || now_ms - decision->held.since_ms >= DIM_MARK_MS)
+        hold(decision, now_ms);
+    return true;
 }
 
 bool decision_take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
 {
-    const bool like = is_like(decision), dim = decision_is_dim(decision);
-    if (!like && dim)
-        wait_for_more(decision, now_ms);
-    if (!steady_takes(&decision->steady, like,
-                      dim ? DIM_HOLD_MS : METHOD_HOLD_MS, now_ms))
+    if (decision_is_dim(decision))
+        return take_dim(decision, now_ms);
+    if (!steady_takes(&decision->steady, is_like(decision), METHOD_HOLD_MS,
+                      now_ms))
         return false;
     take(decision, window_ms, now_ms);
+    hold(decision, now_ms);
     return true;
 }
 
@@ -123,6 +149,7 @@ bool decision_frame(decision_t *decision, const frame_t *frame,
         return false;
     steady_takes(&decision->steady, is_like(decision), 0, now_ms);
     take(decision, settings->window_ms, now_ms);
+    hold(decision, now_ms);
     steady_let_go(&decision->steady);
     return true;
 }
@@ -152,6 +179,7 @@ void decision_follow(decision_t *decision, const dock_settings_t *before,
                                 .meaningful = decision->steady.meaningful};
     steady_show(&decision->steady,
                 marker_hue(&water, now->mapping, now->fallback_hue));
+    decision->held.hue = decision->steady.shown;
 }
 
 bool decision_is_stale(const decision_t *decision, uint32_t now_ms)

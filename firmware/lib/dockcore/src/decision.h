@@ -20,6 +20,13 @@
  * after which an old decision is none any more. */
 #define DECISION_WAIT_MS 15000
 
+/* Water to compare with: its value and its marker's hue, and since when. */
+typedef struct {
+    uint8_t value;
+    uint16_t hue;
+    uint32_t since_ms;
+} decision_mark_t;
+
 typedef struct {
     smoothed_t smoothed;     /* only while a frame is decided on */
     background_t background; /* of the last good frame */
@@ -27,13 +34,14 @@ typedef struct {
     uint16_t decided_hue; /* of the last good frame alone */
     uint16_t water_hue;   /* of the last frame that was taken */
     uint8_t water_value;
-    uint8_t other_value; /* of water that is unlike it and waits to be taken */
-    uint16_t other_hue;  /* of the marker there */
-    bool decided;        /* whether a frame was taken yet */
-    bool refused;        /* whether the last frame was not valid */
-    uint32_t frames;     /* decided on; stays at UINT32_MAX */
-    uint32_t frame_faults;    /* frames refused; stays at UINT32_MAX */
-    uint32_t last_frame_ms;   /* when the last good frame came */
+    decision_mark_t held;   /* dim water: what decisions must be like */
+    decision_mark_t other;  /* dim water unlike that, which waits to be taken */
+    uint32_t sampled_ms;    /* dim water: when one last went into the mean */
+    bool decided;           /* whether a frame was taken yet */
+    bool refused;           /* whether the last frame was not valid */
+    uint32_t frames;        /* decided on; stays at UINT32_MAX */
+    uint32_t frame_faults;  /* frames refused; stays at UINT32_MAX */
+    uint32_t last_frame_ms; /* when the last good frame came */
     uint32_t frame_period_q8; /* mean time between frames in units of 1/256 ms;
                                  0 before the second frame */
 } decision_t;
@@ -47,9 +55,11 @@ bool decision_see(decision_t *decision, const frame_t *frame,
                   const dock_settings_t *settings, uint32_t now_ms);
 
 /* Takes what decision_see saw into what is shown, averaged over window_ms.
- * Returns false where it waits: decisions of another kind for METHOD_HOLD_MS,
- * and in dim water all that is unlike what was before for 30 s, for dusk and
- * dawn are slow and a vehicle's lamps pass. */
+ * Returns false where it waits: decisions of another kind for METHOD_HOLD_MS.
+ *
+ * Dusk and dawn are slow, and a vehicle's lamps pass: in dim water all that is
+ * unlike what was ten seconds before waits, for half a minute in which it must
+ * not change; and the mean is that of a minute. */
 bool decision_take(decision_t *decision, uint32_t window_ms, uint32_t now_ms);
 
 /* Takes that nothing could be seen: water without a hue. */

@@ -18,8 +18,8 @@ typedef struct {
     uint16_t shown;     /* 0 before the first decision */
     bool meaningful;    /* the kind of the decisions in the window */
     bool begun;         /* false: the next decision is taken as it is */
-    uint32_t agreed_ms; /* when the last one came that was taken, or the wait
-                           for another kind began */
+    uint32_t agreed_ms; /* when the last one came that was like these, or the
+                           wait for another kind began */
 } steady_t;
 
 void steady_init(steady_t *steady);
@@ -37,7 +37,7 @@ void steady_let_go(steady_t *steady);
 bool steady_takes(steady_t *steady, bool like, uint32_t hold_ms,
                   uint32_t now_ms);
 
-/* The wait of hold_ms begins now: what came up to here was not all alike. */
+/* The wait of hold_ms for another kind begins now. */
 void steady_wait(steady_t *steady, uint32_t now_ms);
 
 /* Takes a decision made at now_ms: the hue, and whether it is that of water

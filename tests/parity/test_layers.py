@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -29,6 +30,7 @@ def symbols(source: Path, folder: Path) -> tuple[set[str], set[str]]:
 def uses(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
     """For each file of the core, the files that it calls or whose tables it reads."""
     folder = tmp_path_factory.mktemp("objects")
+    subprocess.run([sys.executable, ROOT / "shared" / "mavlink.py"], check=True)
     sources = sorted(CORE.glob("*.c"))
     with ThreadPoolExecutor(2) as pool:
         found = list(pool.map(lambda source: symbols(source, folder), sources))

@@ -45,7 +45,8 @@ def info(
     with connect(port, timeout, baud, system, log) as client:
         status = client.status()
     print(f"port      {client.connection.url}")
-    print(f"name      {client.name}, chip {client.version.uid:012x}")
+    chip = f", chip {client.version.uid:012x}" if client.version.uid else ""
+    print(f"name      {client.name}{chip}")
     print(f"firmware  {client.version.git_hash}")
     print(f"method    {client.version.method_digest} (the same as this program's)")
     print(f"reset     reason {status.reset_reason}")

@@ -22,11 +22,6 @@ static frame_t injected_frame(const dock_t *dock, const link_image_t *image)
                      image->height,      format,      0};
 }
 
-bool link_is_injecting(const link_t *link)
-{
-    return link->injection.state != INJECTION_OFF;
-}
-
 bool link_injection_lasts(link_t *link, uint32_t now_ms)
 {
     link_injection_t *injection = &link->injection;

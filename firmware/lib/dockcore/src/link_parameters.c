@@ -72,9 +72,10 @@ bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
     return true;
 }
 
-void link_list_parameters(link_t *link)
+void link_reset_parameters(dock_t *dock)
 {
-    link_turn_all(&link->parameters);
+    link_reset_settings(dock);
+    link_turn_all(&dock->link.parameters);
 }
 
 void link_on_parameter_list(dock_t *dock, const received_t *message,
@@ -85,7 +86,7 @@ void link_on_parameter_list(dock_t *dock, const received_t *message,
     message_read(&request, sizeof request, message);
     if (link_is_for_us(&dock->link, request.target_system,
                        request.target_component))
-        link_list_parameters(&dock->link);
+        link_turn_all(&dock->link.parameters);
 }
 
 void link_on_parameter_read(dock_t *dock, const received_t *message,

@@ -44,7 +44,7 @@ int link_find_parameter(link_t *link, const char name[16]);
 int link_asked_parameter(link_t *link, int16_t index, const char name[16]);
 bool link_set_parameter(dock_t *dock, int index, uint32_t real32); /* or says
                                                         why it does not */
-void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
+void link_reset_settings(dock_t *dock); /* to the defaults */
 
 /* link_parameters.c */
 typedef bool link_send_one_t(const dock_t *dock, uint16_t index,
@@ -52,7 +52,7 @@ typedef bool link_send_one_t(const dock_t *dock, uint16_t index,
 link_handler_t link_on_parameter_list, link_on_parameter_read,
     link_on_parameter_set;
 link_sender_t link_send_parameters;
-void link_list_parameters(link_t *link); /* all are to be sent */
+void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
 void link_turn_all(link_turn_t *turn);
 void link_turn_one(link_turn_t *turn, int index);
 bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
@@ -75,7 +75,6 @@ bool link_want_snapshot(link_t *link, uint32_t now_ms); /* false: not now */
 bool link_repeat_snapshot(link_t *link, int64_t number, int64_t first,
                           int64_t count); /* false: there is no such packet */
 void link_expire_snapshot(link_t *link, uint32_t now_ms); /* a wish */
-bool link_is_sending_snapshot(const link_t *link);
 void link_forget_snapshot(link_t *link); /* the buffer is taken for another */
 void link_take_snapshot(dock_t *dock, const frame_t *frame,
                         uint32_t now_ms); /* if one is wanted */
@@ -83,7 +82,6 @@ link_sender_t link_send_snapshot;
 
 /* link_injection.c */
 link_handler_t link_on_handshake, link_on_packet;
-bool link_is_injecting(const link_t *link);
 bool link_injection_lasts(link_t *link, uint32_t now_ms); /* or ends it */
 link_sender_t link_send_echo;
 
@@ -97,6 +95,16 @@ link_sender_t link_send_reports;
 static inline void link_count_fault(link_t *link)
 {
     link->faults++;
+}
+
+static inline bool link_is_sending_snapshot(const link_t *link)
+{
+    return link->snapshot.state >= SNAPSHOT_TAKEN;
+}
+
+static inline bool link_is_injecting(const link_t *link)
+{
+    return link->injection.state != INJECTION_OFF;
 }
 
 /* True for a message to this dock, or to a component of every system. */

@@ -97,14 +97,13 @@ static void follow_set(dock_t *dock, int index)
         link_set_period(&dock->link, REPORT_STATUS, 0);
 }
 
-void link_reset_parameters(dock_t *dock)
+void link_reset_settings(dock_t *dock)
 {
     const dock_settings_t before = dock->settings;
     dock->settings = dock_reset_settings(&before);
     follow_change(dock, &before);
     for (int i = 0; i < PARAMETER_COUNT; i++)
         follow_set(dock, i);
-    link_list_parameters(&dock->link);
 }
 
 bool link_set_parameter(dock_t *dock, int index, uint32_t bits)

@@ -30,11 +30,6 @@ bool link_repeat_snapshot(link_t *link, int64_t number, int64_t first,
     return true;
 }
 
-bool link_is_sending_snapshot(const link_t *link)
-{
-    return link->snapshot.state >= SNAPSHOT_TAKEN;
-}
-
 void link_forget_snapshot(link_t *link)
 {
     if (link->snapshot.state >= SNAPSHOT_KEPT)

@@ -165,7 +165,7 @@ class SimulatedDock:
         self._ready_s = now_s + BOOT_S
         self._frame_due_s = self._frame_s = self._ready_s
         kept = self._core.marker_hue if reset == SOFTWARE else None
-        self._core: Any = _core(self._storage.load())
+        self._core = _core(self._storage.load())
         if kept is not None:
             self._core.set_last_hue(kept)
         self._drive(now_s)

@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo results test hil soak image bench fuzz lint format generate contrast clean setup-demo setup-bench
+.PHONY: help setup demo results test hil soak night image bench fuzz lint format generate contrast clean setup-demo setup-bench
 
 help: ## List these targets
 	@sed -nE 's/^([a-z]+):[^#]*## (.*)/\1\t\2/p' Makefile | expand -t 12
@@ -36,6 +36,9 @@ soak: setup ## A minute of an RTSP camera, 20 kills of a recording, ten minutes 
 
 image: setup ## The BlueOS extension's commands in fresh environments, and its wheels for arm64; needs the network
 	@$(VENV)/python tools/image.py
+
+night: setup ## Nights of twelve hours of a dock that sees its own lamps, in fast time; HOURS=1 for a short run
+	@$(VENV)/python tools/night.py $(if $(HOURS),--hours=$(HOURS))
 
 setup-bench:
 	@$(PYTHON) tools/setup bench

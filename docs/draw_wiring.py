@@ -275,7 +275,7 @@ def draw_direct() -> Drawing:
         550,
         590,
         (
-            "Pin low: lit.  Pin high, 3.3 V: dark.  LED_ANODE = 1, the default.",
+            "Pin low: lit.  Pin high, 3.3 V: dark.  LED_ANODE = 1, to be saved.",
             "A resistor for each of the 12 cathodes, in ohms: about 1.5 mA a die, 6 mA a pin.",
             "A dot joins wires; a gap is a crossing.  GND: any of the board's, not GND/R.",
             "On the ESP32-CAM-MB its USB plug is supply and serial adapter: leave both off.",
@@ -317,7 +317,7 @@ def draw_mosfet() -> Drawing:
         800,
         560,
         (
-            "Set LED_ANODE = 0 and save it before the anodes get +5 V.",
+            "LED_ANODE = 0, the default: see that it is before the anodes get +5 V.",
             "Pin high: lit.  Pin low: dark.  With LED_ANODE = 1 all is reversed.",
             "A resistor for each of the 12 cathodes, in ohms: 18 to 20 mA a die.",
             "Gate: 100 ohms in series, 4.7k to ground.  Source to ground.",

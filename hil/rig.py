@@ -23,8 +23,8 @@ BAD_TEXT = re.compile(
 )
 REBOOT = dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN
 FULL = 4096
-"""A duty of all of the time; with common anodes it is dark."""
-DARK = [FULL, FULL, FULL]
+"""A duty of all of the time."""
+DARK = [0, 0, 0]
 
 
 class Rig:
@@ -51,9 +51,14 @@ class Rig:
         self.raw.clear()
 
     def defaults(self) -> None:
-        """Default parameters and automatic colours, from the camera; not in flash."""
+        """Default parameters and automatic colours, from the camera; not in flash.
+
+        The limit and the polarity, which a reset leaves, are those of the golden duties.
+        """
         self.send(handshake(0, 0, 0, 0, 0))
         self.dock.reset()
+        self.dock.set_parameter("LED_LIMIT", 255)
+        self.dock.set_parameter("LED_ANODE", 0)
         self.dock.led_auto()
         if self.wire.baud != 921600:  # or a saved default would lose the board
             self.dock.set_parameter("LINK_BAUD", self.wire.baud)
@@ -86,9 +91,13 @@ class Rig:
         return heard
 
     def command(self, number: int, *values: float) -> int:
-        """The result of a command."""
+        """The last result of a command."""
         self.send(command_long(number, *values))
-        return int(self.wait("COMMAND_ACK", lambda m: m.command == number).result)
+
+        def last(ack: Message) -> bool:
+            return bool(ack.command == number and ack.result != dialect.MAV_RESULT_IN_PROGRESS)
+
+        return int(self.wait("COMMAND_ACK", last).result)
 
     def status(self, wanted: Callable[[Message], bool], timeout_s: float = 5.0) -> Message:
         """The first DOCK_STATUS that ``wanted`` accepts, asked for again and again."""
@@ -142,7 +151,7 @@ class Rig:
         self.send(handshake(0, 0, 0, 0, 0))
         self.dock.led_raw(0, 0, 0)
         anode = self.dock.parameter("LED_ANODE")
-        assert self.dock.status().duty == (DARK if anode else [0, 0, 0])
+        assert self.dock.status().duty == ([FULL] * 3 if anode else DARK)
 
     def close(self) -> None:
         """Listen no more; the wire stays open."""

@@ -56,6 +56,24 @@ def test_the_rolling_mean_follows_within_its_window(rig: Rig) -> None:
     assert abs(both.marker_hue - (first.marker_hue + second.marker_hue) / 2) <= 1
 
 
+def test_another_mapping_shows_its_hue_at_once(rig: Rig) -> None:
+    frame = golden.FRAMES["pool_qqvga"]
+    rig.dock.set_parameter("WINDOW_MS", 2000)
+    assert golden.inject(rig, frame).marker_hue == frame.marker_hue
+    rig.dock.set_parameter("MAPPING", MAPPINGS.index("complement"))
+    sixth = 256  # from ternary's third of the wheel to its half
+    assert rig.dock.status().marker_hue == (frame.marker_hue + sixth) % 1536
+
+
+def test_grey_water_after_blue_shows_the_fallback_and_nothing_between(rig: Rig) -> None:
+    water, grey = golden.FRAMES["pool_qqvga"], golden.FRAMES["noise_qqvga"]
+    rig.dock.set_parameter("WINDOW_MS", 2000)
+    for frame in (water, grey, water):
+        rig.send(frame.messages[0], *frame.messages[1])
+        seen = rig.wait("DOCK_STATUS", lambda s, f=frame: s.decided_hue == f.marker_hue)
+        assert seen.marker_hue == frame.marker_hue
+
+
 def test_a_frame_that_is_too_large_or_too_short_changes_nothing(rig: Rig) -> None:
     frame = golden.FRAMES["pool_qqvga"]
     shown = list(golden.inject(rig, frame).duty)
@@ -119,6 +137,6 @@ def test_the_board_s_camera_delivers_living_frames(rig: Rig, record_property) ->
 
 def test_the_brightest_channel_is_on_for_the_whole_period(rig: Rig) -> None:
     status = rig.status(lambda s: s.frames > 0)
-    assert min(status.duty) == 0
-    rig.dock.set_parameter("LED_ANODE", 0)
-    assert max(rig.dock.status().duty) == FULL
+    assert max(status.duty) == FULL
+    rig.dock.set_parameter("LED_ANODE", 1)
+    assert min(rig.dock.status().duty) == 0

@@ -22,22 +22,22 @@ def test_one_channel_alone_in_steps(rig: Rig, channel: int) -> None:
         rgb[channel] = level
         rig.dock.led_raw(*rgb)
         expected = list(DARK)
-        expected[channel] = FULL - round(level / 255 * FULL)
+        expected[channel] = round(level / 255 * FULL)
         assert duties(rig) == pytest.approx(expected, abs=1)
     assert rig.dock.status().led_mode == RAW
 
 
-# Pure colours of the standard wheel; with common anodes 0 is full light.
+# Pure colours of the standard wheel.
 @pytest.mark.parametrize(
     ("degrees", "expected"),
     [
-        (0, [0, FULL, FULL]),
-        (60, [0, 0, FULL]),
-        (120, [FULL, 0, FULL]),
-        (180, [FULL, 0, 0]),
-        (240, [FULL, FULL, 0]),
-        (300, [0, FULL, 0]),
-        (360, [0, FULL, FULL]),
+        (0, [FULL, 0, 0]),
+        (60, [FULL, FULL, 0]),
+        (120, [0, FULL, 0]),
+        (180, [0, FULL, FULL]),
+        (240, [0, 0, FULL]),
+        (300, [FULL, 0, FULL]),
+        (360, [FULL, 0, 0]),
     ],
 )
 def test_a_fixed_hue_shows_that_colour(rig: Rig, degrees: float, expected: list[int]) -> None:
@@ -49,7 +49,7 @@ def test_a_fixed_hue_shows_that_colour(rig: Rig, degrees: float, expected: list[
 def test_the_manual_mode_of_the_parameters_shows_its_hue(rig: Rig) -> None:
     rig.dock.set_parameter("LED_HUE", 120)
     rig.dock.set_parameter("LED_MODE", 1)
-    assert duties(rig) == [FULL, 0, FULL]
+    assert duties(rig) == [0, FULL, 0]
     rig.dock.set_parameter("LED_MODE", 0)
     assert rig.dock.status().led_mode == AUTO
 
@@ -57,9 +57,9 @@ def test_the_manual_mode_of_the_parameters_shows_its_hue(rig: Rig) -> None:
 def test_the_limit_dims_and_the_polarity_turns_round(rig: Rig) -> None:
     rig.dock.led_raw(255, 0, 0)
     rig.dock.set_parameter("LED_LIMIT", 51)
-    assert duties(rig) == pytest.approx([FULL - round(FULL / 5), FULL, FULL], abs=1)
-    rig.dock.set_parameter("LED_ANODE", 0)
     assert duties(rig) == pytest.approx([round(FULL / 5), 0, 0], abs=1)
+    rig.dock.set_parameter("LED_ANODE", 1)
+    assert duties(rig) == pytest.approx([FULL - round(FULL / 5), FULL, FULL], abs=1)
 
 
 @pytest.mark.parametrize(

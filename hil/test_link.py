@@ -114,9 +114,9 @@ def test_messages_to_others_are_not_obeyed(rig: Rig, system: int, component: int
     assert list(rig.dock.status().duty) != DARK
 
 
-def test_messages_to_all_are_obeyed(rig: Rig) -> None:
-    rig.send(parameter_set(WINDOW, 600, 0, 0))
-    assert rig.wait("PARAM_VALUE", lambda m: m.param_id == WINDOW).param_value == 600
+def test_messages_to_all_are_answered_but_change_nothing(rig: Rig) -> None:
+    rig.send(parameter_set(WINDOW, 600, 0, 0), parameter_read(WINDOW, 0, 0))
+    assert rig.wait("PARAM_VALUE", lambda m: m.param_id == WINDOW).param_value == 2000
 
 
 def test_the_dock_s_own_address_as_sender_is_not_obeyed(rig: Rig) -> None:

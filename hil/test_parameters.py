@@ -82,7 +82,8 @@ def test_a_reset_brings_every_default_and_keeps_flash_until_saved(rig: Rig) -> N
     rig.dock.save()
     rig.dock.reset()
     defaults = {p.name: pytest.approx(p.default, abs=1e-4) for p in PARAMETERS}
-    defaults["LINK_BAUD"] = rig.dock.parameters()["LINK_BAUD"]
+    kept = ("LINK_BAUD", "LED_LIMIT", "LED_ANODE")
+    defaults.update((name, rig.dock.parameters()[name]) for name in kept)
     assert rig.dock.parameters() == defaults
     rig.reset()
     rig.alive()

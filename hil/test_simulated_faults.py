@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 from rig import DARK, Message, Rig, parameter_read
 
@@ -52,6 +54,27 @@ def test_a_camera_that_never_comes_leaves_the_leds_dark_and_the_link_alive(
     assert rig.dock.set_parameter("WINDOW_MS", 500) == 500
     rig.dock.led_hue(0)
     assert list(rig.dock.status().duty) != DARK
+
+
+def test_a_camera_that_never_comes_leaves_the_fallback_after_15_seconds(
+    simulate: Simulate,
+) -> None:
+    rig = simulate("--fault", "camera-lost")
+    status = rig.status(lambda s: list(s.duty) != DARK, timeout_s=25)
+    assert 14_000 < status.time_boot_ms < 21_000
+    assert (status.marker_hue, status.frame_rate_dhz, status.confidence) == (512, 0, 0)
+
+
+def test_at_night_it_does_not_follow_its_own_light(simulate: Simulate, tmp_path: Path) -> None:
+    night = tmp_path / "night.png"
+    cv2.imwrite(str(night), np.zeros((120, 160, 3), np.uint8))
+    rig = simulate(str(night), "--own-light", "0.05")
+    rig.status(lambda s: s.faults == dialect.DOCK_FAULT_OWN_LIGHT, timeout_s=20)
+    heard = rig.heard_until(
+        lambda m: m.get_type() == "DOCK_STATUS" and m.time_boot_ms > 15_000, timeout_s=20
+    )
+    shown = {m.marker_hue for m in heard if m.get_type() == "DOCK_STATUS" and m.frames > 0}
+    assert shown == {512}
 
 
 def flip(blob: bytes) -> bytes:

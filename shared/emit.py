@@ -59,6 +59,7 @@ def constants(m: Method) -> dict[str, int]:
         "MARKER_NODES": nodes,
         "MARKER_NODE_STEP": m["hue"]["range"] // nodes,
         "WINDOW_MS": roll["window_ms"],
+        "HOLD_MS": roll["hold_ms"],
         "MIN_WINDOW_MS": roll["min_window_ms"],
         "MAX_WINDOW_MS": roll["max_window_ms"],
         "WINDOW_CAPACITY": roll["max_window_ms"] * roll["max_rate_hz"] // 1000,
@@ -143,7 +144,7 @@ def vectors_json(vectors: dict[str, Any]) -> str:
     def records(key: str) -> str:
         return ",\n".join("  " + json.dumps(record) for record in vectors[key])
 
-    kinds = ("frames", "rolling", "led", "mappings")
+    kinds = ("frames", "rolling", "steady", "led", "mappings")
     body = ",\n".join(f' "{kind}": [\n{records(kind)}\n ]' for kind in kinds)
     return f'{{\n "banner": {json.dumps(vectors["banner"])},\n{body}\n}}\n'
 
@@ -186,12 +187,23 @@ def c_vectors(banner: str, vectors: dict[str, Any], pixels_digest: str) -> str:
     parts += ["const golden_rolling_t golden_rolling[] = {", *steps, "};"]
     parts += [f"const size_t golden_rolling_count = {len(steps)};", ""]
 
+    steps = []
+    for r in vectors["steady"]:
+        for i, ((now, meaningful, hue), shown) in enumerate(
+            zip(r["decisions"], r["shown"], strict=True)
+        ):
+            steps.append(
+                f"    {{{str(i == 0).lower()}, {now}u, {str(meaningful).lower()}, {hue}, {shown}}},"
+            )
+    parts += ["const golden_steady_t golden_steady[] = {", *steps, "};"]
+    parts += [f"const size_t golden_steady_count = {len(steps)};", ""]
+
     parts.append("const golden_led_t golden_leds[] = {")
     for v in vectors["led"]:
         led = v["led"]
         parts.append(
             f"    {{{v['hue']}, {{{braces(led['offset'])}, {braces(led['matrix'])},"
-            f" {led['gamma']}, {led['limit']}, {str(led['common_anode']).lower()}}},"
+            f" {led['gamma']}, {led['limit']}, {str(led['common_anode']).lower()}, 255}},"
             f" {braces(v['duties'])}}},"
         )
     parts += ["};", f"const size_t golden_led_count = {len(vectors['led'])};", ""]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
 
 from parameters import Parameter
@@ -17,9 +16,6 @@ def c_header(banner: str, parameters: Sequence[Parameter]) -> str:
 
 #include "parameter.h"
 
-/* Changes with the table: a blob of another version is not read. */
-#define PARAMETER_TABLE_VERSION UINT32_C(0x{table_version(parameters):08x})
-
 enum {{
 {indices}
     PARAMETER_COUNT
@@ -29,12 +25,6 @@ extern const parameter_t PARAMETERS[PARAMETER_COUNT];
 
 #endif
 """
-
-
-def table_version(parameters: Sequence[Parameter]) -> int:
-    """Of names and fields: what a stored blob's values mean."""
-    text = "\n".join(f"{p.name} {p.field} {p.numerator} {p.shift}" for p in parameters)
-    return zlib.crc32(text.encode())
 
 
 def c_table(banner: str, parameters: Sequence[Parameter]) -> str:

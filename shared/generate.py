@@ -61,6 +61,7 @@ def outputs() -> dict[str, bytes]:
         "banner": banner,
         "frames": frames,
         "rolling": golden.rolling_vectors(method, lookup),
+        "steady": golden.steady_vectors(method, lookup),
         "led": golden.led_vectors(method, lookup),
         "mappings": golden.mapping_vectors(method, lookup),
     }
@@ -75,8 +76,10 @@ def outputs() -> dict[str, bytes]:
         ),
         "host/chromadock/parameter_table.py": emit_parameters.python(settings_banner, settings),
         "docs/parameters.md": emit_parameters.page(settings_banner, settings),
-        "firmware/lib/dockcore/src/method.h": emit.c_header(banner, method, digest(method), lookup),
-        "firmware/lib/dockcore/src/method.c": emit.c_tables(banner, method, lookup),
+        "firmware/lib/dockcore/src/method.h": emit.c_header(
+            banner, method, digest(method), in_c := lookup | tables.core_tables()
+        ),
+        "firmware/lib/dockcore/src/method.c": emit.c_tables(banner, method, in_c),
         "host/chromadock/method.py": emit.python(banner, method, digest(method)),
         "host/chromadock/method_tables.py": emit.python_tables(banner, lookup),
         "shared/vectors/golden.json": emit.vectors_json(vectors),

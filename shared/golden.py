@@ -21,7 +21,7 @@ NEUTRAL_LED = {
     "matrix": [4096, 0, 0, 0, 4096, 0, 0, 0, 4096],
     "gamma": 2,
     "limit": 255,
-    "common_anode": True,
+    "common_anode": False,
 }
 
 
@@ -75,6 +75,11 @@ def equal_bins(u: float, v: float) -> tuple[float, float, float]:
     return (10, 60, 150) if u < 0.5 else (150, 215, 230)
 
 
+def two_waters(u: float, v: float) -> tuple[float, float, float]:
+    """Two bins of nearly the same size, and hues that take the core the longest."""
+    return (60, 80, 40) if u < 0.49 else (120, 160, 80)
+
+
 def every_hue(u: float, v: float) -> tuple[float, float, float]:
     """All hues across, all saturations down."""
     return reference.rgb_from_hsv(int(u * 1536), int(v * 255), 180)
@@ -126,6 +131,7 @@ def frames() -> list[tuple[str, str, int, int, str, bytes]]:
         ("pool_contrast", RGB565, 160, 120, "contrast", pool, 12),
         ("brown_contrast", RGB888, 80, 60, "contrast", brown, 12),
         ("lamps_glow", RGB888, 80, 60, "ternary", lamps_glow, 12),
+        ("two_waters_qqvga", RGB565, 160, 120, "ternary", two_waters, 0),
         ("night_contrast", RGB888, 1, 1, "contrast", flat(2, 4, 9), 0),
     ]
     return [
@@ -204,6 +210,40 @@ def rolling_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
     return vectors
 
 
+def steady_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
+    """Sequences of decisions, with their kind, and the hue shown after each."""
+    rng = random.Random(11)
+    wrap, fallback = 1 << 32, m["marker"]["fallback_hue"]
+    window, hold = m["rolling"]["window_ms"], m["rolling"]["hold_ms"]
+
+    def kinds(start: int, step: int, *runs: tuple[bool, int]) -> list[tuple[int, bool, int]]:
+        decisions, now = [], start
+        for meaningful, count in runs:
+            for _ in range(count):
+                hue = 900 + int(40 * rng.random()) if meaningful else fallback
+                decisions.append((now % wrap, meaningful, hue))
+                now += step
+        return decisions
+
+    sequences = {
+        "one_kind": kinds(0, 100, (True, 40)),
+        "grey_for_less_than_the_hold": kinds(0, 100, (True, 20), (False, 9), (True, 20)),
+        "grey_for_as_long_as_the_hold": kinds(0, 100, (True, 20), (False, 30), (True, 30)),
+        "turns": kinds(0, 100, *[(True, 2), (False, 1)] * 20),
+        "night_first": kinds(0, 33, (False, 40), (True, 60)),
+        "one_ms_short": [(0, True, 900), (hold - 1, False, 512), (hold, False, 512)],
+        "slow_camera": kinds(0, 2500, (True, 3), (False, 3), (True, 2)),
+        "clock_wrap": kinds(wrap - 900, 100, (True, 5), (False, 25)),
+        "clock_set_back": [(5000, True, 10), (5033, False, 512), (40, False, 512), (73, True, 20)],
+    }
+    vectors = []
+    for name, decisions in sequences.items():
+        steady = reference.SteadyHue(m, t, window)
+        shown = [steady.add(meaningful, hue, now) for now, meaningful, hue in decisions]
+        vectors.append({"name": name, "window_ms": window, "decisions": decisions, "shown": shown})
+    return vectors
+
+
 def mapping_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
     """Every mapping's marker for water of every hue."""
     fallback = m["marker"]["fallback_hue"]
@@ -224,14 +264,14 @@ def led_vectors(m: Method, t: Tables) -> list[dict[str, Any]]:
     crosstalk = [4300, -200, -60, -350, 4500, -500, 0, -900, 5000]
     settings = [
         NEUTRAL_LED,
-        {**NEUTRAL_LED, "common_anode": False},
+        {**NEUTRAL_LED, "common_anode": True},
         {**NEUTRAL_LED, "gamma": 0, "limit": 128},
         {**NEUTRAL_LED, "gamma": 3, "offset": [-40, 25, 60]},
-        {**NEUTRAL_LED, "gamma": 1, "matrix": crosstalk, "common_anode": False},
+        {**NEUTRAL_LED, "gamma": 1, "matrix": crosstalk, "common_anode": True},
         {**NEUTRAL_LED, "offset": [255, -255, 0], "limit": 0},
         {**NEUTRAL_LED, "matrix": [120, 0, 7, 0, 90, 1, 0, 0, 33], "limit": 200},
-        {**NEUTRAL_LED, "matrix": [32767] * 9, "common_anode": False},
-        {**NEUTRAL_LED, "matrix": [-32768] * 9, "common_anode": False},
+        {**NEUTRAL_LED, "matrix": [32767] * 9, "common_anode": True},
+        {**NEUTRAL_LED, "matrix": [-32768] * 9},
     ]
     return [
         {"hue": hue, "led": led, "duties": reference.led_duties(m, t, hue, led)}

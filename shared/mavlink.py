@@ -14,6 +14,7 @@ import hashlib
 import importlib.metadata
 import importlib.util
 import io
+import re
 import shutil
 import sys
 import tempfile
@@ -43,6 +44,9 @@ def generate_c(out: Path = C_HEADERS) -> None:
     with tempfile.TemporaryDirectory(dir=out.parent, prefix=".mavgen-") as scratch:
         headers = Path(scratch) / "c"
         mavgen("C", headers, Path(scratch))
+        dialect = headers / DEFINITION.stem
+        seeds = crc_extras((dialect / f"{DEFINITION.stem}.h").read_text(encoding="utf-8"))
+        (dialect / "crc_extras.h").write_text(seeds, encoding="utf-8")
         stamp.unlink(missing_ok=True)
         new = {file.relative_to(headers) for file in headers.rglob("*.h")}
         # File by file: another build may be reading the folder, or writing the same to it.
@@ -54,6 +58,23 @@ def generate_c(out: Path = C_HEADERS) -> None:
                 old.unlink(missing_ok=True)
         (Path(scratch) / "stamp").write_text(key)
         (Path(scratch) / "stamp").replace(stamp)
+
+
+def crc_extras(header: str) -> str:
+    """A C header with the ids of all messages and their checksums' seeds, three bytes a message.
+
+    ``header`` is the dialect's own, whose table takes twelve.
+    """
+    table = re.search(r"#define MAVLINK_MESSAGE_CRCS \{(.*)\}", header)
+    if table is None:
+        raise MavlinkError("mavgen's header has no MAVLINK_MESSAGE_CRCS: take the pinned pymavlink")
+    rows = sorted((int(i), int(c)) for i, c in re.findall(r"\{(\d+), (\d+),", table[1]))
+    ids, seeds = (", ".join(map(str, column)) for column in zip(*rows, strict=True))
+    return f"""/* Written by shared/mavlink.py: ids in ascending order, and what each one's
+ * checksum begins with. */
+#define MAVLINK_CRC_IDS {{{ids}}}
+#define MAVLINK_CRC_EXTRAS {{{seeds}}}
+"""
 
 
 def generate_python(out: Path) -> None:

@@ -230,10 +230,43 @@ class RollingHue:
         return hue if mean is None else mean  # opposite hues cancel: the newest wins
 
 
+class SteadyHue:
+    """The hue shown: the rolling mean of decisions of one kind, of water with a hue or without.
+
+    Near the limit between the kinds decisions of both come in turns, and the mean of a mapped hue
+    and the fallback would be neither.  Decisions of the other kind are left out until none of the
+    kind shown has come for ``hold_ms``; then the window is emptied and they are shown.
+    """
+
+    def __init__(self, m: Method, t: Tables, window_ms: int) -> None:
+        self.m, self.t, self.window_ms = m, t, window_ms
+        self.rolling = RollingHue(m, t, window_ms)
+        self.meaningful: bool | None = None
+        self.agreed_ms = self.shown = 0
+
+    def add(self, meaningful: bool, hue: int, now_ms: int) -> int:
+        """Take a decision at ``now_ms`` (32-bit clock) and return the hue to show."""
+        if meaningful != self.meaningful:
+            held_ms = (now_ms - self.agreed_ms) & 0xFFFFFFFF
+            if self.meaningful is not None and held_ms < self.m["rolling"]["hold_ms"]:
+                return self.shown
+            self.rolling = RollingHue(self.m, self.t, self.window_ms)
+        self.meaningful, self.agreed_ms = meaningful, now_ms
+        self.shown = self.rolling.add(hue, now_ms)
+        return self.shown
+
+
 def rolling_capacity(m: Method) -> int:
     """Decisions that fit the longest window at the fastest rate."""
     r = m["rolling"]
     return r["max_window_ms"] * r["max_rate_hz"] // 1000
+
+
+def dimmed_limit(limit: int, dark_limit: int, value: int) -> int:
+    """Brightness limit for water of this HSV value, 0..255: ``dark_limit`` where it is black."""
+    if dark_limit >= limit:
+        return limit
+    return dark_limit + ((limit - dark_limit) * value + 127) // 255
 
 
 def led_duties(m: Method, t: Tables, hue: int, led: dict[str, Any]) -> list[int]:

@@ -53,6 +53,11 @@ def marker_hue(m: Method) -> list[int]:
     return ways
 
 
+def mean_of_four(full: int, shift: int) -> list[int]:
+    """For each sum of four values 0..``full`` their mean on 0..255, halves up, shifted left."""
+    return [(510 * i + 4 * full) // (8 * full) << shift for i in range(4 * full + 1)]
+
+
 def unwrapped(hues: list[int], turn: int) -> list[int]:
     """A closed way round some hues, from each to the next on the shorter side."""
     way = [hues[0]]
@@ -75,4 +80,12 @@ def all_tables(m: Method) -> dict[str, list[int]]:
             f"HUE_DIVISION_{turn}": hue_division(turn, hue["opencv_shift"])
             for turn in hue["opencv_ranges"]
         },
+    }
+
+
+def core_tables() -> dict[str, list[int]]:
+    """Of the C alone: means of 2 x 2 RGB565 pixels, green where ``pixel.h`` has it."""
+    return {
+        "MEAN_RED_OR_BLUE": mean_of_four(31, 0),
+        "MEAN_GREEN": mean_of_four(63, 10),
     }

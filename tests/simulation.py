@@ -33,21 +33,28 @@ def running_dock(
     fps: float = 20.0,
     settings: Path | None = None,
     faults: tuple[Fault, ...] = (),
+    save_s: float = 0.0,
 ) -> Iterator[tuple[str, SimulatedDock]]:
     """A dock served by a thread: what ``--port`` takes, and the dock itself."""
-    port = TcpPort("localhost:0") if tcp else PtyPort()
     camera = open_camera(source)
-    dock = SimulatedDock(camera, fps, settings, faults, 0, CLOCK())
+    dock = SimulatedDock(camera, fps, settings, faults, 0, CLOCK(), save_s=save_s)
+    with contextlib.closing(camera), served(dock, tcp) as url:
+        yield url, dock
+
+
+@contextlib.contextmanager
+def served(dock: SimulatedDock, tcp: bool = False) -> Iterator[str]:
+    """What ``--port`` takes for a dock, or for what behaves like one, served by a thread."""
+    port = TcpPort("localhost:0") if tcp else PtyPort()
     stop = Event()
     thread = Thread(target=serve, args=(dock, port, stop))
     thread.start()
     try:
-        yield port.url, dock
+        yield port.url
     finally:
         stop.set()
         thread.join()
         port.close()
-        camera.close()
 
 
 @contextlib.contextmanager

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from xtensa import Measurement
 
+FRAME_BUDGETS = {"total": budgets.INSTRUCTIONS_QQVGA, "cold": budgets.INSTRUCTIONS_COLD}
 MEMORY_BUDGETS = {
     "code_bytes": ("code and tables", budgets.CODE_BYTES),
     "ram_bytes": ("RAM", budgets.RAM_BYTES),
@@ -39,9 +40,9 @@ def instructions_table(measurement: Measurement) -> Table:
         table.add_column(name, justify="right")
     for stage in frames[measurement.worst_frame]:
         counts = [stages[stage] for stages in frames.values()]
-        if stage == "total":
+        if stage in FRAME_BUDGETS:
             table.add_section()
-            limit = budgets.INSTRUCTIONS_QQVGA
+            limit = FRAME_BUDGETS[stage]
             table.add_row(stage, *(judged(n, limit, f"{n:,}") for n in counts), f"{limit:,}")
         else:
             table.add_row(stage, *(f"{n:,}" for n in counts))

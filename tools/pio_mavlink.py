@@ -1,6 +1,7 @@
 """Run by PlatformIO before each build: the link's C headers, for dockcore and what uses it."""
 
 import importlib.util
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,12 +11,29 @@ from SCons.Script import DefaultEnvironment
 env = DefaultEnvironment()
 
 ROOT = Path(env.subst("$PROJECT_DIR"))
-CONSTRAINTS = ROOT / "tools" / "constraints.txt"
+PYTHON = env.subst("$PYTHONEXE")
+
+
+def installer() -> list[str]:
+    """Return the command that installs into PlatformIO's Python.
+
+    ``uv tool install platformio`` and pioarduino make environments without pip, by uv.
+    """
+    if importlib.util.find_spec("pip") is not None:
+        return [PYTHON, "-m", "pip", "install"]
+    uv = shutil.which("uv") or shutil.which("uv", path=str(Path(PYTHON).parent))
+    if uv is None:
+        sys.exit(
+            f"error: {PYTHON} has neither pymavlink nor pip, and there is no uv: "
+            "install pymavlink there"
+        )
+    return [uv, "pip", "install", "--python", PYTHON]
+
 
 # PlatformIO's Python is another one than .venv's where its own installer made it.
 if importlib.util.find_spec("pymavlink") is None:
-    pip = [env.subst("$PYTHONEXE"), "-m", "pip", "install", "-q", "-c", str(CONSTRAINTS)]
-    subprocess.run([*pip, "pymavlink"], stdin=subprocess.DEVNULL)
+    pinned = ["-q", "-c", str(ROOT / "tools" / "constraints.txt"), "pymavlink"]
+    subprocess.run([*installer(), *pinned], stdin=subprocess.DEVNULL)
     importlib.invalidate_caches()
 
 sys.path.insert(0, str(ROOT / "shared"))

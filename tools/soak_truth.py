@@ -16,7 +16,7 @@ from chromadock.colour.marker import marker_hue
 from chromadock.colour.working_image import RGB565_SCALE, smooth, unpack_rgb565, working_image
 from chromadock.link.rgb565 import HEIGHT, WIDTH, to_rgb565
 
-FRAMES = 96
+FRAMES = 480
 _KEPT_MS = 6000
 
 

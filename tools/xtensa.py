@@ -52,7 +52,8 @@ class Measurement:
         differences: a line for each value that differs.
         instructions: for each QQVGA RGB565 golden frame those of every stage. "decision" is
             marker hue, rolling mean of a full window and LED duties; "total" is a
-            ``dock_frame`` and a ``dock_led_duties``.
+            ``dock_frame`` and a ``dock_led_duties``, "cold" the same where the grey bin that was
+            the fullest in the frame before is now the second.
         stack: the most bytes of stack that each function used.
         code_bytes: dockcore's code and constants, as linked from its three entry points.
         ram_bytes: a ``dock_t`` and dockcore's own variables.

@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = ROOT / "firmware" / "lib" / "dockcore"
 HARNESS = ROOT / "firmware" / "xtensa"
 MAVLINK = ROOT / "build" / "mavlink" / "c"
+WHOLE = ROOT / "firmware" / "lib" / "wholeimage"
 GOLDEN = ROOT / "tests" / "firmware"
 PIXELS = ROOT / "shared" / "vectors"
 BUILD = ROOT / "build" / "xtensa"
@@ -140,7 +141,7 @@ def digest(also: Sequence[str]) -> str:
     """Digest of everything that the programs are built from."""
     total = hashlib.sha256("\n".join(also).encode())
     golden = [GOLDEN / "golden.c", GOLDEN / "golden.h", PIXELS / "frames.bin"]
-    for folder in (LIBRARY / "src", HARNESS):
+    for folder in (LIBRARY / "src", WHOLE / "src", HARNESS):
         golden += sorted(path for path in folder.rglob("*") if path.is_file())
     for path in [Path(__file__), *golden]:
         total.update(f"{path.relative_to(ROOT)}\0".encode() + path.read_bytes())
@@ -152,12 +153,13 @@ def compile_and_link(library: Sequence[str]) -> None:
     for old in BUILD.glob("*.o"):
         old.unlink()
     core = sorted((LIBRARY / "src").glob("*.c"))
+    whole = sorted((WHOLE / "src").glob("*.c"))
     runtime = HARNESS / "runtime.c"
     harness = sorted({*HARNESS.glob("*.c"), *HARNESS.glob("*.S")} - {runtime})
     system = [f"-isystem{HARNESS / 'include'}", f"-isystem{MAVLINK}"]
-    headers = [*system, f"-I{LIBRARY / 'src'}", f"-I{GOLDEN}"]
+    headers = [*system, f"-I{LIBRARY / 'src'}", f"-I{WHOLE / 'src'}", f"-I{GOLDEN}"]
     compiler = [COMPILER, *library, *BUILD_FLAGS, *headers, f"-Wa,-I{PIXELS}", "-c"]
-    run([*compiler, *core, *harness, GOLDEN / "golden.c"], 120)
+    run([*compiler, *core, *whole, *harness, GOLDEN / "golden.c"], 120)
     run([*compiler, *RUNTIME_FLAGS, runtime], 60)
 
     linker = [COMPILER, "-nostdlib", "-Wl,--gc-sections"]

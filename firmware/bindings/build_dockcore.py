@@ -17,6 +17,7 @@ from cffi import FFI
 
 HERE = Path(__file__).resolve().parent
 DOCKCORE = HERE.parent / "lib" / "dockcore" / "src"
+WHOLE_IMAGE = HERE.parent / "lib" / "wholeimage" / "src"
 SHARED = HERE.parents[1] / "shared"
 
 sys.path.insert(0, str(SHARED))
@@ -26,7 +27,11 @@ import mavlink  # noqa: E402 - found by the line above
 def declarations() -> str:
     """dockcore.h preprocessed: dockcore's own lines and numbers, no function bodies."""
     compiler = shlex.split(os.environ.get("CC", "cc"))
-    headers = (DOCKCORE / "dockcore.h", HERE / "hsv_convert.h")
+    headers = (
+        DOCKCORE / "dockcore.h",
+        WHOLE_IMAGE / "whole_image.h",
+        HERE / "hsv_convert.h",
+    )
     kept, own = [], False
     for header in headers:
         text = subprocess.run(
@@ -56,13 +61,17 @@ ffi = FFI()
 ffi.cdef(declarations())
 ffi.set_source(
     "chromadock_firmware._dockcore",
-    '#include "dockcore.h"\n#include "hsv_convert.h"\n',
+    '#include "dockcore.h"\n#include "whole_image.h"\n#include "hsv_convert.h"\n',
     # Relative to setup.py's folder, as setuptools wants it.
     sources=[
         os.path.relpath(path, HERE)
-        for path in [*sorted(DOCKCORE.glob("*.c")), HERE / "hsv_convert.c"]
+        for path in [
+            *sorted(DOCKCORE.glob("*.c")),
+            WHOLE_IMAGE / "whole_image.c",
+            HERE / "hsv_convert.c",
+        ]
     ],
-    include_dirs=[str(DOCKCORE), str(HERE)],
+    include_dirs=[str(DOCKCORE), str(WHOLE_IMAGE), str(HERE)],
     extra_compile_args=["-std=c11", "-O2", "-isystem", str(mavlink.C_HEADERS)],
 )
 

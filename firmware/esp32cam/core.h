@@ -8,6 +8,7 @@
 
 extern "C" {
 #include <dock.h>
+#include <settings_blob.h>
 }
 
 #endif

@@ -3,6 +3,7 @@
 #include <esp_system.h>
 
 #include "clock.h"
+#include "last_hue.h"
 #include "mailbox.h"
 #include "port.h"
 #include "pwm.h"
@@ -22,6 +23,7 @@ void Loop::turn()
 {
     receive();
     camera();
+    rest();
     requests();
     leds();
     transmit();
@@ -61,22 +63,43 @@ void Loop::camera()
         return;
     dock_set_camera(dock, &report.camera);
     if (report.event == CAMERA_FRAME) {
-        const frame_t frame = frame_of(*report.frame);
+        frame_t frame = frame_of(*report.frame);
+        frame.age_ms =
+            exposure.age_ms(camera_began_us(*report.frame), clock_us());
         dock_frame(dock, &frame, clock_ms());
         watchdog_feed();
     } else if (report.event == CAMERA_FAULT) {
         dock_frame(dock, nullptr, clock_ms());
         watchdog_feed();
     } else if (report.event == CAMERA_PAUSED) {
-        save();
+        paused();
     }
+    rest();
     mailbox_done();
+}
+
+void Loop::paused()
+{
+    if (saving)
+        save();
+    camera_stands = restarting;
 }
 
 void Loop::save()
 {
     dock_saved(dock, storage_save(dock->settings));
-    order.pause = false;
+    saving = false;
+    order.pause = restarting;
+    mailbox_order(order);
+}
+
+/* Before the camera's task goes on after a frame, and for what a host wants. */
+void Loop::rest()
+{
+    const uint32_t rest_ms = dock_rest_ms(dock);
+    if (rest_ms == order.rest_ms)
+        return;
+    order.rest_ms = rest_ms;
     mailbox_order(order);
 }
 
@@ -86,16 +109,16 @@ void Loop::requests()
     case DOCK_REQUEST_NONE:
         return;
     case DOCK_REQUEST_SAVE:
-        order.pause = true;
+        saving = order.pause = true;
         break;
     case DOCK_REQUEST_CAMERA:
         order.settings = dock->settings.camera;
         ++order.serial;
         break;
     case DOCK_REQUEST_REBOOT:
-        restarting = true;
+        restarting = order.pause = true;
         restart_ms = clock_ms();
-        return;
+        break;
     }
     mailbox_order(order);
 }
@@ -103,8 +126,9 @@ void Loop::requests()
 void Loop::leds()
 {
     uint16_t duty[3];
-    dock_led_duties(dock, duty);
+    dock_led_duties(dock, duty, clock_ms());
     pwm_set(duty, dock->settings.led.common_anode);
+    last_hue_keep(dock_hue(dock));
 }
 
 void Loop::transmit()
@@ -122,7 +146,11 @@ void Loop::transmit()
 
 void Loop::restart_when_silent()
 {
-    if (!silent || out_sent < out_length || order.pause || !port_is_idle())
+    if (!silent || out_sent < out_length || saving || !port_is_idle())
+        return;
+    /* The chip resets none of its peripherals: a camera that went on filling
+     * its buffers would write over the loader's memory, and hang it. */
+    if (!camera_stands && clock_ms() - restart_ms < LOOP_PAUSE_MS)
         return;
     /* Dark, not frozen at the last colour, until the next start's decision. */
     pwm_start(dock->settings.led.common_anode);

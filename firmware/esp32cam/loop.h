@@ -5,11 +5,15 @@
 
 #include "camera.h"
 #include "core.h"
+#include "exposure.h"
 
 enum {
     LOOP_WAIT_MS = 2, /* for the camera: what a byte waits at most */
     /* A host that keeps asking shall not put off a restart for ever. */
     LOOP_LAST_WORDS_MS = 500,
+    /* Longer than a driver waits for a frame and starts anew.  One that does
+     * not return after all is left to the chip's own watchdog. */
+    LOOP_PAUSE_MS = 10000,
     LOOP_OUT = 512, /* bytes, whole messages: the longest has 280 */
 };
 
@@ -26,7 +30,9 @@ class Loop
   private:
     void receive();
     void camera();
+    void paused();
     void save();
+    void rest();
     void requests();
     void leds();
     void transmit();
@@ -34,11 +40,14 @@ class Loop
 
     dock_t *dock;
     camera_order_t order = {};
+    Exposure exposure;
     uint8_t out[LOOP_OUT] = {};
     size_t out_length = 0;
     size_t out_sent = 0;
-    bool restarting = false;
-    bool silent = false; /* nothing more from the dock */
+    bool saving = false;        /* once the camera is paused */
+    bool restarting = false;    /* once it is, and all bytes are out */
+    bool silent = false;        /* nothing more from the dock */
+    bool camera_stands = false; /* paused for the restart */
     uint32_t restart_ms = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core.h"
+#include "last_hue.h"
 #include "loop.h"
 #include "mailbox.h"
 #include "port.h"
@@ -13,7 +14,8 @@
 #include "storage.h"
 #include "watchdog.h"
 
-/* Arduino's loop() is the colour task; core 0 stays the camera driver's. */
+/* Arduino's loop() is the colour task.  The driver's own task is on core 0; its
+ * interrupts are on the core whose task starts it, which is this one. */
 #if defined(ARDUINO_RUNNING_CORE) && ARDUINO_RUNNING_CORE != 1
 #error "the colour task belongs on core 1"
 #endif
@@ -54,16 +56,17 @@ static void run_camera(void *)
         camera_turn();
 }
 
-static void tell_board(bool settings_corrupt)
+static void tell_board(dock_stored_t stored)
 {
     static const char hash[] = GIT_HASH;
     dock_board_t board = {};
     board.reset_reason = static_cast<uint8_t>(esp_reset_reason());
-    board.settings_corrupt = settings_corrupt;
+    board.settings = stored;
     for (size_t i = 0; i < sizeof board.git_hash && hash[i] != '\0'; i++)
         board.git_hash[i] = static_cast<uint8_t>(hash[i]);
     board.buffer = image;
     board.capacity = sizeof image;
+    board.uid = ESP.getEfuseMac();
     dock_set_board(&dock, &board);
 }
 
@@ -73,12 +76,13 @@ void setup()
      * have told which way round that is. */
     pwm_release();
     dock_settings_t settings;
-    const storage_result_t stored = storage_load(&settings);
+    const dock_stored_t stored = storage_load(&settings);
     pwm_start(settings.led.common_anode);
     port_start(settings.link_baud);
 
     dock_init(&dock, &settings);
-    tell_board(stored == STORAGE_CORRUPT);
+    tell_board(stored);
+    dock_set_last_hue(&dock, last_hue());
 
     /* The camera while memory is in one piece: it needs 32 KB of it at once. */
     camera_order_t order = {};

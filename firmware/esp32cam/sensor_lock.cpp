@@ -1,10 +1,14 @@
 #include "sensor_lock.h"
 
 enum {
-    /* The driver's register numbers: bank 0 (DSP), then the register. */
+    /* OV2640, as the driver numbers them: bank 0 (DSP), then the register. */
     WHITE_BALANCE_CONTROL = 0x0C7,
     WHITE_BALANCE_MANUAL = 0x40,
     WHITE_BALANCE_RED = 0x0CC, /* green and blue follow */
+    /* OV3660 and OV5640: gains of 16 bits, in sixteenths of the OV2640's. */
+    WIDE_CONTROL = 0x3406,
+    WIDE_MANUAL = 0x01,
+    WIDE_RED = 0x3400,
     /* Beyond it set_aec_value clamps without a word. */
     LONGEST_EXPOSURE = 1200,
 };
@@ -16,6 +20,18 @@ static const uint8_t PRESET_GAINS[4][3] = {
     {0x52, 0x41, 0x66}, /* office */
     {0x42, 0x3F, 0x71}, /* home */
 };
+
+bool sensor_takes_commands(const sensor_t *sensor)
+{
+    const uint16_t pid = sensor->id.PID;
+    return pid == OV2640_PID || pid == OV3660_PID || pid == OV5640_PID;
+}
+
+/* What it means that commands were not taken. */
+static sensor_result_t refusal(const sensor_t *sensor)
+{
+    return sensor_takes_commands(sensor) ? SENSOR_FAILED : SENSOR_DIFFERS;
+}
 
 bool sensor_white_balance_is_given(const camera_settings_t &settings)
 {
@@ -47,7 +63,7 @@ sensor_result_t sensor_release(sensor_t *sensor)
     failures += sensor->set_wb_mode(sensor, 0) != 0;
     failures += sensor->set_whitebal(sensor, 1) != 0;
     failures += sensor->set_awb_gain(sensor, 1) != 0;
-    return failures == 0 ? SENSOR_OK : SENSOR_FAILED;
+    return failures == 0 ? SENSOR_OK : refusal(sensor);
 }
 
 static sensor_values_t choose(const camera_settings_t &settings,
@@ -88,28 +104,33 @@ static int lock_white_balance(sensor_t *sensor,
     return failures;
 }
 
+/* Whether the bits of the mask read back as they should. */
+static sensor_result_t check_register(sensor_t *sensor, int reg, int mask,
+                                      int expected)
+{
+    const int value = sensor->get_reg(sensor, reg, mask);
+    return value < 0           ? SENSOR_FAILED
+           : value == expected ? SENSOR_OK
+                               : SENSOR_DIFFERS;
+}
+
 static sensor_result_t check_white_balance(sensor_t *sensor,
                                            const camera_settings_t &settings)
 {
     if (!sensor_white_balance_is_given(settings))
         return sensor->status.awb == 0 ? SENSOR_OK : SENSOR_DIFFERS;
-    if (sensor->id.PID != OV2640_PID)
-        return SENSOR_OK; /* its registers are others */
-    const int control =
-        sensor->get_reg(sensor, WHITE_BALANCE_CONTROL, WHITE_BALANCE_MANUAL);
-    if (control < 0)
-        return SENSOR_FAILED;
-    if (control != WHITE_BALANCE_MANUAL)
-        return SENSOR_DIFFERS;
+    const bool wide = sensor->id.PID != OV2640_PID;
     const uint8_t *gains = PRESET_GAINS[settings.white_balance - 1];
-    for (int i = 0; i < 3; i++) {
-        const int gain = sensor->get_reg(sensor, WHITE_BALANCE_RED + i, 0xFF);
-        if (gain < 0)
-            return SENSOR_FAILED;
-        if (gain != gains[i])
-            return SENSOR_DIFFERS;
-    }
-    return SENSOR_OK;
+    sensor_result_t result =
+        wide ? check_register(sensor, WIDE_CONTROL, WIDE_MANUAL, WIDE_MANUAL)
+             : check_register(sensor, WHITE_BALANCE_CONTROL,
+                              WHITE_BALANCE_MANUAL, WHITE_BALANCE_MANUAL);
+    for (int i = 0; i < 3 && result == SENSOR_OK; i++)
+        result = wide ? check_register(sensor, WIDE_RED + 2 * i, 0xFFFF,
+                                       16 * gains[i])
+                      : check_register(sensor, WHITE_BALANCE_RED + i, 0xFF,
+                                       gains[i]);
+    return result;
 }
 
 sensor_result_t sensor_lock(sensor_t *sensor, const camera_settings_t &settings,
@@ -121,8 +142,10 @@ sensor_result_t sensor_lock(sensor_t *sensor, const camera_settings_t &settings,
         choose(settings, known != nullptr ? *known : settled);
     const int failures = lock_exposure_and_gain(sensor, wanted) +
                          lock_white_balance(sensor, settings);
-    if (failures > 0)
-        return SENSOR_FAILED;
+    if (failures > 0) {
+        *values = sensor_read(sensor);
+        return refusal(sensor);
+    }
     *values = sensor_read(sensor);
     if (values->exposure != wanted.exposure || values->gain != wanted.gain ||
         sensor->status.aec != 0 || sensor->status.agc != 0)

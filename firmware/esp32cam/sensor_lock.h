@@ -1,4 +1,4 @@
-/* Exposure, gain and white balance of the OV2640: automatic, or locked.
+/* Exposure, gain and white balance of the sensor: automatic, or locked.
  *
  * Automatic white balance removes the very colour that is measured, and the
  * dock's own LEDs would drive it. */
@@ -16,9 +16,14 @@ struct sensor_values_t {
 
 enum sensor_result_t {
     SENSOR_OK,
-    SENSOR_DIFFERS, /* it took the commands and reads back something else */
+    SENSOR_DIFFERS, /* it reads back something else, or knows no such command */
     SENSOR_FAILED,  /* it does not answer */
 };
+
+/* True for a sensor whose driver has every command that a lock needs: OV2640,
+ * OV3660, OV5640.  One that refuses a command does not answer.  The driver of
+ * any other says no to all of them, and the sensor stays automatic. */
+bool sensor_takes_commands(const sensor_t *sensor);
 
 /* True where the settings name every value to lock at. */
 bool sensor_values_are_given(const camera_settings_t &settings);

@@ -1,62 +1,46 @@
 #include "storage.h"
 
-#include <nvs.h>
-#include <nvs_flash.h>
+#include <string.h>
 
-static const char NAMESPACE[] = "chromadock";
-static const char KEY[] = "settings";
+#include "settings_nvs.h"
+#include "settings_sector.h"
 
-/* False where what the partition held is lost. */
-static bool start_flash()
+static bool same(const stored_blob_t &a, const stored_blob_t &b)
 {
-    const esp_err_t error = nvs_flash_init();
-    if (error == ESP_OK)
-        return true;
-    if (error == ESP_ERR_NVS_NO_FREE_PAGES ||
-        error == ESP_ERR_NVS_NEW_VERSION_FOUND) {
-        nvs_flash_erase();
-        nvs_flash_init();
-    }
-    return false;
+    return a.length == b.length && memcmp(a.bytes, b.bytes, a.length) == 0;
 }
 
-static storage_result_t load(dock_settings_t *settings)
+dock_stored_t storage_load(dock_settings_t *settings)
 {
-    if (!start_flash())
-        return STORAGE_CORRUPT;
-    nvs_handle_t handle;
-    esp_err_t error = nvs_open(NAMESPACE, NVS_READONLY, &handle);
-    if (error == ESP_ERR_NVS_NOT_FOUND)
-        return STORAGE_MISSING;
-    if (error != ESP_OK)
-        return STORAGE_CORRUPT;
-    uint8_t blob[SETTINGS_BLOB_BYTES];
-    size_t length = sizeof blob;
-    error = nvs_get_blob(handle, KEY, blob, &length);
-    nvs_close(handle);
-    if (error == ESP_ERR_NVS_NOT_FOUND)
-        return STORAGE_MISSING;
-    if (error != ESP_OK || !settings_from_blob(settings, blob, length))
-        return STORAGE_CORRUPT;
-    return STORAGE_LOADED;
-}
-
-storage_result_t storage_load(dock_settings_t *settings)
-{
+    stored_blob_t first, second;
+    settings_nvs_load(&first);
+    settings_sector_load(&second);
     *settings = dock_default_settings();
-    return load(settings);
+
+    settings_read_t read =
+        settings_from_blob(settings, first.bytes, first.length);
+    if (read != SETTINGS_REFUSED) {
+        if (!same(first, second))
+            settings_sector_save(first.bytes, first.length);
+        return read == SETTINGS_MENDED ? DOCK_STORED_IN_PART
+                                       : DOCK_STORED_WHOLE;
+    }
+    read = settings_from_blob(settings, second.bytes, second.length);
+    if (read != SETTINGS_REFUSED) {
+        settings_nvs_save(second.bytes, second.length);
+        return read == SETTINGS_MENDED ? DOCK_STORED_IN_PART
+                                       : DOCK_STORED_RESTORED;
+    }
+    return first.missing && second.missing ? DOCK_STORED_WHOLE
+                                           : DOCK_STORED_LOST;
 }
 
 bool storage_save(const dock_settings_t &settings)
 {
     uint8_t blob[SETTINGS_BLOB_BYTES];
     settings_to_blob(&settings, blob);
-    nvs_handle_t handle;
-    if (nvs_open(NAMESPACE, NVS_READWRITE, &handle) != ESP_OK)
-        return false;
-    const bool written =
-        nvs_set_blob(handle, KEY, blob, sizeof blob) == ESP_OK &&
-        nvs_commit(handle) == ESP_OK;
-    nvs_close(handle);
-    return written;
+    /* One after the other: the second place is touched only when the first one
+     * is whole. */
+    return settings_nvs_save(blob, sizeof blob) &&
+           settings_sector_save(blob, sizeof blob);
 }

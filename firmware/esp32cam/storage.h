@@ -1,20 +1,17 @@
-/* The settings' blob in NVS.  Written only on request, while the camera is
- * paused: flash writes stop everything that runs from flash or PSRAM. */
+/* The settings in flash, in two places, so that one of them is whole at any
+ * moment.  Written only on request, while the camera is paused, and at the
+ * start, before it runs: flash writes stop everything that runs from flash. */
 #ifndef STORAGE_H
 #define STORAGE_H
 
 #include "core.h"
 
-enum storage_result_t {
-    STORAGE_LOADED,
-    STORAGE_MISSING, /* never saved: a first start */
-    STORAGE_CORRUPT, /* something else than a valid blob, or no answer */
-};
+/* The stored settings; the defaults if there are none that can be read.  Where
+ * the two places differ, the blob that is in use is written to the other. */
+dock_stored_t storage_load(dock_settings_t *settings);
 
-/* The stored settings; the defaults if there are none that can be used. */
-storage_result_t storage_load(dock_settings_t *settings);
-
-/* True where the flash has taken all of it. */
+/* True where both places hold them now.  If the power fails meanwhile, the next
+ * start has these settings or those saved before. */
 bool storage_save(const dock_settings_t &settings);
 
 #endif

@@ -4,6 +4,7 @@
 #include "console.h"
 #include "instructions.h"
 #include "messages.h"
+#include "qqvga.h"
 #include "vectors.h"
 
 #define FRAME_MS 33 /* 30 Hz: a window full of decisions */
@@ -11,12 +12,12 @@
 static dock_t dock;
 
 static void put_instructions(const char *name, const char *stage,
-                             uint32_t start, uint32_t end)
+                             uint32_t count)
 {
     put_word("instructions");
     put_word(name);
     put_word(stage);
-    put_number(instructions_between(start, end));
+    put_number(count);
     put_line_end();
 }
 
@@ -27,11 +28,34 @@ static uint32_t fill_window(const golden_frame_t *golden)
     const dock_settings_t settings = golden_settings(golden);
     uint32_t now_ms = 0;
     dock_init(&dock, &settings);
+    dock.decision.decided = true;
+    dock.decision.water_value = golden->background.value;
     for (uint16_t i = 0; i < METHOD_WINDOW_CAPACITY; i++) {
-        rolling_add(&dock.rolling, i, now_ms, settings.window_ms);
+        steady_take(&dock.decision.steady, golden->background.meaningful, i,
+                    settings.window_ms, now_ms);
         now_ms += FRAME_MS;
     }
     return now_ms;
+}
+
+/* The whole of a decision; `bin` was the fullest in the frame before. */
+static void count_frame(const golden_frame_t *golden, const char *kind,
+                        uint8_t bin)
+{
+    const frame_t frame = golden_frame(golden);
+    const uint32_t now_ms = fill_window(golden);
+    uint16_t duties[3];
+    dock.decision.background.bin = bin;
+    const uint32_t start = ticks();
+    dock_frame(&dock, &frame, now_ms);
+    dock_led_duties(&dock, duties, now_ms);
+    put_instructions(golden->name, kind, instructions_between(start, ticks()));
+}
+
+static void take_nothing(void *context, const uint32_t row[WORKING_WIDTH])
+{
+    (void)context;
+    (void)row;
 }
 
 static void count_stages(const golden_frame_t *golden)
@@ -39,35 +63,45 @@ static void count_stages(const golden_frame_t *golden)
     const frame_t frame = golden_frame(golden);
     const uint32_t now_ms = fill_window(golden);
     const dock_settings_t *settings = &dock.settings;
+    background_t background;
+    uint32_t row[WORKING_WIDTH];
     uint16_t duties[3];
     const uint32_t start = ticks();
-    working_image_from_frame(&dock.image, &frame);
+    for (uint32_t y = 0; y < WORKING_HEIGHT; y++)
+        qqvga_row(&frame, y, row);
     const uint32_t averaged = ticks();
-    working_image_smooth(&dock.image);
+    smoothed_open(&dock.decision.smoothed, &frame);
+    smoothed_rows(&dock.decision.smoothed, take_nothing, NULL);
     const uint32_t smoothed = ticks();
-    background_from_image(&dock.background, &dock.image);
+    background_from_rows(&background, smoothed_rows, &dock.decision.smoothed,
+                         golden->background.bin);
     const uint32_t summed = ticks();
     const uint16_t hue =
-        marker_hue(&dock.background, settings->mapping, settings->fallback_hue);
-    const uint16_t mean =
-        rolling_add(&dock.rolling, hue, now_ms, settings->window_ms);
+        marker_hue(&background, settings->mapping, settings->fallback_hue);
+    const uint16_t mean = rolling_add(&dock.decision.steady.rolling, hue,
+                                      now_ms, settings->window_ms);
     led_duties(duties, mean, &settings->led);
     const uint32_t decided = ticks();
-    put_instructions(golden->name, "working_image", start, averaged);
-    put_instructions(golden->name, "smooth", averaged, smoothed);
-    put_instructions(golden->name, "background", smoothed, summed);
-    put_instructions(golden->name, "decision", summed, decided);
+    /* Each stage draws its rows from the one before. */
+    const uint32_t average = instructions_between(start, averaged);
+    const uint32_t smooth = instructions_between(averaged, smoothed);
+    const uint32_t sum = instructions_between(smoothed, summed);
+    put_instructions(golden->name, "working_image", average);
+    put_instructions(golden->name, "smooth", smooth - average);
+    put_instructions(golden->name, "background", sum - smooth);
+    put_instructions(golden->name, "decision",
+                     instructions_between(summed, decided));
 }
 
-static void count_total(const golden_frame_t *golden)
+/* The fullest bin but one: taken for the fullest, it costs the most. */
+static uint8_t second_bin(const background_t *background)
 {
-    const frame_t frame = golden_frame(golden);
-    const uint32_t now_ms = fill_window(golden);
-    uint16_t duties[3];
-    const uint32_t start = ticks();
-    dock_frame(&dock, &frame, now_ms);
-    dock_led_duties(&dock, duties);
-    put_instructions(golden->name, "total", start, ticks());
+    uint8_t second = background->bin == 0;
+    for (uint8_t bin = 0; bin < METHOD_GREY_BINS; bin++)
+        if (bin != background->bin &&
+            background->bin_counts[bin] > background->bin_counts[second])
+            second = bin;
+    return second;
 }
 
 bool print_instructions(void)
@@ -80,7 +114,8 @@ bool print_instructions(void)
             golden->height != 120)
             continue;
         count_stages(golden);
-        count_total(golden);
+        count_frame(golden, "total", golden->background.bin);
+        count_frame(golden, "cold", second_bin(&golden->background));
     }
     return true;
 }
@@ -122,7 +157,7 @@ static size_t host_message(uint8_t *bytes, size_t capacity, uint32_t id,
                            uint8_t crc_extra, const void *payload, uint8_t n)
 {
     uint8_t sequence = 0;
-    sender_t sender = {bytes, 0, capacity, &sequence};
+    sender_t sender = {bytes, 0, capacity, &sequence, DOCK_ID_SYSTEM};
     message_send(&sender, id, crc_extra, payload, n);
     const size_t end = sender.length - 2;
     bytes[5] = 255; /* not the dock's own address */
@@ -144,7 +179,7 @@ static bool print_link_stack(void)
     static uint8_t buffer[128], out[4096], first[RECEIVER_CAPACITY],
         second[RECEIVER_CAPACITY];
     const dock_settings_t settings = dock_default_settings();
-    const dock_board_t board = {1, true, {0}, buffer, sizeof buffer};
+    const dock_board_t board = {1, true, {0}, buffer, sizeof buffer, 0};
     dock_init(&dock, &settings);
     dock_set_board(&dock, &board);
     mavlink_data_transmission_handshake_t handshake = {
@@ -167,9 +202,9 @@ static bool print_link_stack(void)
                                 {at, (uintptr_t)out, sizeof out, 0}};
     uint32_t of_receive = stack_used(&announce);
     keep_larger(&of_receive, stack_used(&deliver));
-    dock.link.version_due = true;
+    dock.link.reports[REPORT_VERSION].state = REPORT_DUE;
     const uint32_t of_transmit = stack_used(&speak);
-    const bool decided = dock.counters.frames == 1; /* or it measured nothing */
+    const bool decided = dock.decision.frames == 1; /* or it measured nothing */
     const bool receive_fits = put_stack("dock_receive", of_receive);
     return put_stack("dock_transmit", of_transmit) && receive_fits && decided;
 }

@@ -22,6 +22,7 @@ int main(void)
 {
     check_frames();
     check_rolling();
+    check_steady();
     check_leds();
     check_mappings();
     const uint32_t different = check_close();

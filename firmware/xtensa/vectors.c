@@ -1,11 +1,17 @@
 #include "vectors.h"
 
 #include "check.h"
+#include "pixel.h"
+#include "whole_image.h"
 
 frame_t golden_frame(const golden_frame_t *golden)
 {
-    return (frame_t){golden_pixels + golden->frame_at, golden->frame_bytes,
-                     golden->width, golden->height, golden->format};
+    return (frame_t){golden_pixels + golden->frame_at,
+                     golden->frame_bytes,
+                     golden->width,
+                     golden->height,
+                     golden->format,
+                     0};
 }
 
 dock_settings_t golden_settings(const golden_frame_t *golden)
@@ -17,7 +23,7 @@ dock_settings_t golden_settings(const golden_frame_t *golden)
 
 /* The channels with the bits above them: what does not belong there shows. */
 static void check_image(const char *stage, const uint8_t *expected,
-                        const working_image_t *image)
+                        const whole_image_t *image)
 {
     for (uint32_t i = 0; i < WORKING_PIXELS; i++, expected += 3) {
         const uint32_t pixel = image->pixel[i];
@@ -64,31 +70,45 @@ static void check_duties(const uint16_t expected[3], const uint16_t got[3])
         check_value("duties", i, expected[i], got[i]);
 }
 
-static void load_image(working_image_t *image, const uint8_t *rgb)
+static void load_image(whole_image_t *image, const uint8_t *rgb)
 {
     for (uint32_t i = 0; i < WORKING_PIXELS; i++, rgb += 3)
         image->pixel[i] = pixel_pack(rgb[0], rgb[1], rgb[2]);
 }
 
+/* The golden working image as a frame of its own size, which is read as it is.
+ */
+static frame_t working_frame(const golden_frame_t *golden)
+{
+    return (frame_t){golden_pixels + golden->working_at,
+                     3 * WORKING_PIXELS,
+                     WORKING_WIDTH,
+                     WORKING_HEIGHT,
+                     FRAME_RGB888,
+                     0};
+}
+
 /* Each stage starts from golden values: a fault shows in its own stage only. */
 static void check_stages(const golden_frame_t *golden)
 {
-    static working_image_t image;
+    static whole_image_t image;
     const frame_t frame = golden_frame(golden);
     check_begin("stages", golden->name, 0);
 
     check_value("frame_is_valid", 0, true, frame_is_valid(&frame));
-    working_image_from_frame(&image, &frame);
+    whole_image_working(&image, &frame);
     check_image("working", golden_pixels + golden->working_at, &image);
 
-    load_image(&image, golden_pixels + golden->working_at);
-    working_image_smooth(&image);
+    const frame_t working = working_frame(golden);
+    whole_image_smoothed(&image, &working);
     check_image("smoothed", golden_pixels + golden->smoothed_at, &image);
 
     load_image(&image, golden_pixels + golden->smoothed_at);
     background_t background;
-    background_from_image(&background, &image);
-    check_background(&golden->background, &background);
+    for (uint8_t bin = 0; bin < METHOD_GREY_BINS; bin++) {
+        whole_image_background(&background, &image, bin);
+        check_background(&golden->background, &background);
+    }
 
     const background_t *b = &golden->background;
     const rgb_t *rgb = &golden->background_rgb;
@@ -115,15 +135,16 @@ static void check_dock(const golden_frame_t *golden)
 
     dock_init(&dock, &settings);
     dock_frame(&dock, &frame, 0);
-    dock_led_duties(&dock, duties);
-    check_image("smoothed", golden_pixels + golden->smoothed_at, &dock.image);
-    check_background(&golden->background, &dock.background);
-    check_value("decided_hue", 0, golden->marker_hue, dock.decided_hue);
-    check_value("marker_hue", 0, golden->marker_hue, dock.marker_hue);
-    check_value("decided", 0, true, dock.decided);
-    check_value("frames", 0, 1, dock.counters.frames);
-    check_value("camera_faults", 0, 0, dock.counters.camera_faults);
-    check_value("frame_faults", 0, 0, dock.counters.frame_faults);
+    dock_led_duties(&dock, duties, 0);
+    check_background(&golden->background, &dock.decision.background);
+    check_value("decided_hue", 0, golden->marker_hue,
+                dock.decision.decided_hue);
+    check_value("marker_hue", 0, golden->marker_hue,
+                dock.decision.steady.shown);
+    check_value("decided", 0, true, dock.decision.decided);
+    check_value("frames", 0, 1, dock.decision.frames);
+    check_value("camera_faults", 0, 0, dock.camera_faults);
+    check_value("frame_faults", 0, 0, dock.decision.frame_faults);
     check_duties(golden->duties, duties);
     check_end();
 }
@@ -153,6 +174,27 @@ void check_rolling(void)
         check_value("mean", step, golden->mean,
                     rolling_add(&rolling, golden->hue, golden->now_ms,
                                 METHOD_WINDOW_MS));
+    }
+    if (sequences > 0)
+        check_end();
+}
+
+void check_steady(void)
+{
+    static steady_t steady;
+    uint32_t sequences = 0, step = 0;
+    for (size_t i = 0; i < golden_steady_count; i++, step++) {
+        const golden_steady_t *golden = &golden_steady[i];
+        if (golden->first) {
+            if (i > 0)
+                check_end();
+            check_begin("steady", NULL, sequences++);
+            steady_init(&steady);
+            step = 0;
+        }
+        steady_add(&steady, golden->meaningful, golden->hue, METHOD_WINDOW_MS,
+                   golden->now_ms);
+        check_value("shown", step, golden->shown, steady.shown);
     }
     if (sequences > 0)
         check_end();

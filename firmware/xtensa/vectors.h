@@ -6,6 +6,7 @@
 
 void check_frames(void);
 void check_rolling(void);
+void check_steady(void);
 void check_leds(void);
 void check_mappings(void);
 

@@ -22,7 +22,7 @@ from chromadock.choices import (
 )
 from chromadock.colour.background import BackgroundColour
 from chromadock.colour.hsv import degrees, nearest_hue
-from chromadock.colour.marker import RollingHue, marker_hue, observed_colour
+from chromadock.colour.marker import SteadyHue, marker_hue, observed_colour
 from chromadock.colour.vehicle import vehicle_background
 from chromadock.dock import DockGeometry
 from chromadock.errors import ChromadockError
@@ -105,7 +105,7 @@ class Detector:
                 f"give their colour, or choose method {DEFAULT_METHOD}"
             )
         self._fallback_hue = _fallback_hue(fallback_hue_deg)
-        self._rolling = None if independent else RollingHue()
+        self._steady = None if independent else SteadyHue()
         self._method = _METHODS[method](dock)
         mounting_or_default(mounting)  # refuses what is none
         self._mounting = mounting
@@ -215,7 +215,9 @@ class Detector:
         if self._given is not None and self._given.hue is not None:
             return self._given.hue
         hue = marker_hue(background, self._mapping, self._fallback_hue)
-        return hue if self._rolling is None else self._rolling.add(hue, round(time_s * 1000))
+        if self._steady is None:
+            return hue
+        return self._steady.add(background.meaningful, hue, round(time_s * 1000))
 
 
 # One for all frames of a size: what a method prepares for a camera, it need not prepare again.

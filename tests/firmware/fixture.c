@@ -31,11 +31,10 @@ canvas_t canvas_new(frame_format_t format, uint32_t width, uint32_t height)
     const size_t length = (format == FRAME_RGB565 ? 2u : 3u) * width * height;
     TEST_ASSERT_TRUE_MESSAGE(buffer_count < CANVASES, "too many canvases");
     uint8_t *bytes = calloc(length, 1);
-    if (bytes == NULL)
-        TEST_IGNORE_MESSAGE("too little memory for this frame");
+    TEST_ASSERT_NOT_NULL(bytes);
     buffers[buffer_count++] = bytes;
     return (canvas_t){
-        {bytes, length, (uint16_t)width, (uint16_t)height, format}, bytes};
+        {bytes, length, (uint16_t)width, (uint16_t)height, format, 0}, bytes};
 }
 
 canvas_t canvas_of(frame_format_t format, uint32_t width, uint32_t height,
@@ -104,20 +103,32 @@ uint32_t noise(uint32_t *state)
     return *state >> 16;
 }
 
-void image_fill_part(working_image_t *image, uint32_t first, uint32_t count,
+canvas_t canvas_of_image(const whole_image_t *image)
+{
+    const canvas_t canvas =
+        canvas_new(FRAME_RGB888, WORKING_WIDTH, WORKING_HEIGHT);
+    for (uint32_t i = 0; i < WORKING_PIXELS; i++)
+        canvas_set(&canvas, i % WORKING_WIDTH, i / WORKING_WIDTH,
+                   (colour_t){pixel_red(image->pixel[i]),
+                              pixel_green(image->pixel[i]),
+                              pixel_blue(image->pixel[i])});
+    return canvas;
+}
+
+void image_fill_part(whole_image_t *image, uint32_t first, uint32_t count,
                      uint32_t pixel)
 {
     for (uint32_t i = first; i < first + count; i++)
         image->pixel[i] = pixel;
 }
 
-void image_fill(working_image_t *image, uint32_t pixel)
+void image_fill(whole_image_t *image, uint32_t pixel)
 {
     image_fill_part(image, 0, WORKING_PIXELS, pixel);
 }
 
-void assert_same_image(const working_image_t *expected,
-                       const working_image_t *actual)
+void assert_same_image(const whole_image_t *expected,
+                       const whole_image_t *actual)
 {
     char message[64];
     for (uint32_t i = 0; i < WORKING_PIXELS; i++) {

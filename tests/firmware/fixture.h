@@ -3,10 +3,10 @@
 #define FIXTURE_H
 
 #include "dockcore.h"
+#include "whole_image.h"
 
 /* A frame that can be painted.  Its buffer is on the heap and exactly as long
- * as the frame, so that AddressSanitizer sees a read beyond either end.  A test
- * for which a board has too little memory is ignored there. */
+ * as the frame, so that AddressSanitizer sees a read beyond either end. */
 typedef struct {
     frame_t frame;
     uint8_t *bytes; /* frame.bytes, to write */
@@ -38,14 +38,17 @@ uint32_t mean_by_division(uint64_t sum, uint64_t count, uint64_t full);
 /* The same numbers in every run. */
 uint32_t noise(uint32_t *state);
 
-void image_fill(working_image_t *image, uint32_t pixel);
+/* An RGB888 frame of the working size that is read as this image. */
+canvas_t canvas_of_image(const whole_image_t *image);
+
+void image_fill(whole_image_t *image, uint32_t pixel);
 
 /* `count` pixels from number `first` on. */
-void image_fill_part(working_image_t *image, uint32_t first, uint32_t count,
+void image_fill_part(whole_image_t *image, uint32_t first, uint32_t count,
                      uint32_t pixel);
 
 /* Fails with the first pixel that differs. */
-void assert_same_image(const working_image_t *expected,
-                       const working_image_t *actual);
+void assert_same_image(const whole_image_t *expected,
+                       const whole_image_t *actual);
 
 #endif

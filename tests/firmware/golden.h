@@ -26,6 +26,14 @@ typedef struct {
 } golden_rolling_t;
 
 typedef struct {
+    bool first; /* of a sequence: nothing was decided before */
+    uint32_t now_ms;
+    bool meaningful;
+    uint16_t hue;
+    uint16_t shown;
+} golden_steady_t;
+
+typedef struct {
     uint16_t hue;
     led_settings_t led;
     uint16_t duties[3];
@@ -36,6 +44,8 @@ extern const golden_frame_t golden_frames[];
 extern const size_t golden_frame_count;
 extern const golden_rolling_t golden_rolling[];
 extern const size_t golden_rolling_count;
+extern const golden_steady_t golden_steady[];
+extern const size_t golden_steady_count;
 extern const golden_led_t golden_leds[];
 extern const size_t golden_led_count;
 /* Of every mapping for water of every hue. */

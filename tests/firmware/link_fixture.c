@@ -32,9 +32,10 @@ void link_start_with(const dock_settings_t *settings, uint32_t capacity)
     next_sequence = 0;
     memset(&dock, 0xA5, sizeof dock);
     dock_init(&dock, settings);
-    const dock_board_t board = {1, false, "abcdef01", buffer, capacity};
+    const dock_board_t board = {1,      false,    "abcdef01",
+                                buffer, capacity, BOARD_UID};
     dock_set_board(&dock, &board);
-    dock_set_camera(&dock, &(dock_camera_t){300, 7, true});
+    dock_set_camera(&dock, &(dock_camera_t){300, 7, true, true, 0x26});
     hear();
 }
 
@@ -90,10 +91,17 @@ wire_t wire_parameter_read(const char *name, int16_t index)
 
 wire_t wire_parameter_set(const char *name, float value)
 {
-    mavlink_param_set_t request = {.param_value = value,
-                                   .target_system = host.target_system,
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return wire_parameter_bits(name, bits, MAV_PARAM_TYPE_REAL32);
+}
+
+wire_t wire_parameter_bits(const char *name, uint32_t bits, uint8_t type)
+{
+    mavlink_param_set_t request = {.target_system = host.target_system,
                                    .target_component = host.target_component,
-                                   .param_type = MAV_PARAM_TYPE_REAL32};
+                                   .param_type = type};
+    memcpy(&request.param_value, &bits, sizeof bits);
     put_name(request.param_id, name);
     ENCODE(param_set, &request);
 }
@@ -109,6 +117,19 @@ wire_t wire_command(uint16_t command, float p1, float p2, float p3, float p4)
                                       .target_component =
                                           host.target_component};
     ENCODE(command_long, &request);
+}
+
+wire_t wire_command_int(uint16_t command, float p1, float p2, float p3,
+                        float p4)
+{
+    mavlink_command_int_t request = {.param1 = p1,
+                                     .param2 = p2,
+                                     .param3 = p3,
+                                     .param4 = p4,
+                                     .command = command,
+                                     .target_system = host.target_system,
+                                     .target_component = host.target_component};
+    ENCODE(command_int, &request);
 }
 
 uint16_t packets_in(const frame_t *frame)
@@ -170,7 +191,7 @@ static void parse(const uint8_t *bytes, size_t n)
             continue;
         TEST_ASSERT_EQUAL_UINT8_MESSAGE(next_sequence++, message->seq,
                                         "sequence");
-        TEST_ASSERT_EQUAL_UINT8(DOCK_ID_SYSTEM, message->sysid);
+        TEST_ASSERT_EQUAL_UINT8(dock.link.system, message->sysid);
         TEST_ASSERT_EQUAL_UINT8(DOCK_ID_COMPONENT, message->compid);
         of_messages += MAVLINK_NUM_NON_PAYLOAD_BYTES + message->len;
         message_count++;

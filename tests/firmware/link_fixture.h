@@ -26,6 +26,8 @@ extern dock_t dock;
 extern host_t host;
 extern uint32_t clock_ms; /* what the dock is told */
 
+#define BOARD_UID UINT64_C(0x0000AABBCCDDEEFF)
+
 enum { QQVGA_BYTES = 160 * 120 * 2 };
 
 /* A dock at time 0 with a buffer for a QQVGA frame; its first messages are out.
@@ -39,6 +41,10 @@ wire_t wire_of(const mavlink_message_t *message);
 wire_t wire_parameter_list(void);
 wire_t wire_parameter_read(const char *name, int16_t index);
 wire_t wire_parameter_set(const char *name, float value);
+/* The value's four bytes as they are, with any MAV_PARAM_TYPE. */
+wire_t wire_parameter_bits(const char *name, uint32_t bits, uint8_t type);
+wire_t wire_command_int(uint16_t command, float p1, float p2, float p3,
+                        float p4);
 wire_t wire_command(uint16_t command, float p1, float p2, float p3, float p4);
 wire_t wire_handshake(const frame_t *frame);
 wire_t wire_packet(const frame_t *frame, uint16_t number);

@@ -83,7 +83,7 @@ static inline wire_t one_of(int kind)
     static uint8_t pixels[2 * 253];
     for (size_t i = 0; i < sizeof pixels; i++)
         pixels[i] = (uint8_t)(i * 89 + 1);
-    const frame_t frame = {pixels, sizeof pixels, 1, 253, FRAME_RGB565};
+    const frame_t frame = {pixels, sizeof pixels, 1, 253, FRAME_RGB565, 0};
     switch (kind) {
     case 0:
         return wire_parameter_set("LED_LIMIT", 100);

@@ -56,12 +56,21 @@ static const uint32_t kinds[] = {
     MAVLINK_MSG_ID_DATA_TRANSMISSION_HANDSHAKE,
     MAVLINK_MSG_ID_ENCAPSULATED_DATA,
     MAVLINK_MSG_ID_HEARTBEAT, /* not for the dock */
+    MAVLINK_MSG_ID_COMMAND_INT,
+    MAVLINK_MSG_ID_PARAM_EXT_REQUEST_LIST,
+    MAVLINK_MSG_ID_PARAM_EXT_REQUEST_READ,
+    MAVLINK_MSG_ID_PARAM_EXT_SET,
 };
 
 static const uint16_t commands[] = {
-    MAV_CMD_DOCK_LED,          MAV_CMD_DOCK_SNAPSHOT,
-    MAV_CMD_PREFLIGHT_STORAGE, MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN,
-    MAV_CMD_REQUEST_MESSAGE,   MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+    MAV_CMD_DOCK_LED,
+    MAV_CMD_DOCK_SNAPSHOT,
+    MAV_CMD_PREFLIGHT_STORAGE,
+    MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN,
+    MAV_CMD_REQUEST_MESSAGE,
+    MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+    MAV_CMD_SET_MESSAGE_INTERVAL,
+    MAV_CMD_GET_MESSAGE_INTERVAL,
 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -124,23 +133,28 @@ static void must_be_sound(void)
 {
     const link_t *link = &dock.link;
     uint16_t duty[3];
-    MUST(dock_settings_are_valid(&dock.settings));
-    MUST(dock.led_mode <= DOCK_LED_RAW);
-    MUST(dock.led_hue < METHOD_HUE_RANGE);
-    MUST(dock.marker_hue < METHOD_HUE_RANGE);
-    MUST(dock.decided_hue < METHOD_HUE_RANGE);
-    dock_led_duties(&dock, duty);
+    MUST(dock_mend_settings(&dock.settings) == 0);
+    MUST(dock.lamps.mode <= DOCK_LED_RAW);
+    MUST(dock.lamps.hue < METHOD_HUE_RANGE);
+    MUST(dock.decision.steady.shown < METHOD_HUE_RANGE);
+    MUST(dock.decision.decided_hue < METHOD_HUE_RANGE);
+    dock_led_duties(&dock, duty, clock_ms);
     for (int i = 0; i < 3; i++)
         MUST(duty[i] <= LED_FULL);
     MUST(link->receiver.length <= RECEIVER_CAPACITY);
-    MUST(link->text_count <= LINK_TEXTS && link->ack_count <= LINK_ACKS);
-    MUST(link->parameters_due >> PARAMETER_COUNT == 0);
-    MUST(dock.requests >> (DOCK_REQUEST_REBOOT + 1) == 0);
-    MUST(link->injected.size <= BUFFER_BYTES);
-    MUST(link->injected.size == 0 ||
-         link->injected.next * PACKET < link->injected.size);
-    /* Both would be in the same buffer. */
-    MUST(link->injected.size == 0 || link->snapshot.size == 0);
+    MUST(link->texts.count <= LINK_TEXTS && link->acks.count <= LINK_ACKS);
+    MUST((link->parameters.due | link->typed.values.due |
+          link->typed.answers.due | link->typed.refused) >>
+             PARAMETER_COUNT ==
+         0);
+    MUST(dock.requests.save <= SAVE_WRITING);
+    const link_injection_t *injection = &link->injection;
+    MUST(injection->image.size <= BUFFER_BYTES);
+    if (injection->state >= INJECTION_ANNOUNCED) {
+        MUST(injection->next * PACKET < injection->image.size);
+        /* Both would be in the same buffer. */
+        MUST(link->snapshot.state < SNAPSHOT_TAKEN);
+    }
     MUST(dock.board.buffer == buffer);
 }
 
@@ -167,8 +181,9 @@ static void transmit(size_t capacity)
     }
     MUST(of_messages == n);
     if (capacity > 3000) /* room for all but images */
-        MUST(dock.link.ack_count == 0 && dock.link.text_count == 0 &&
-             dock.link.parameters_due == 0 && !dock.link.status_due);
+        MUST(dock.link.acks.count == 0 && dock.link.texts.count == 0 &&
+             dock.link.parameters.due == 0 &&
+             dock.link.reports[REPORT_STATUS].state != REPORT_DUE);
     free(bytes);
 }
 
@@ -176,26 +191,26 @@ static void camera(void)
 {
     static uint8_t pixels[40 * 30 * 3];
     uint8_t kind = take8();
-    if (dock.counters.frames >= MOST_FRAMES) /* they take the most time */
+    if (dock.decision.frames >= MOST_FRAMES) /* they take the most time */
         kind = 3;
     for (size_t i = 0; i < 3; i++) {
         const uint8_t level = take8();
         for (size_t at = i; at < sizeof pixels; at += 3)
             pixels[at] = (uint8_t)(level ^ (at & kind));
     }
-    frame_t frame = {pixels, 12 * 9 * 3, 12, 9, FRAME_RGB888};
+    frame_t frame = {pixels, 12 * 9 * 3, 12, 9, FRAME_RGB888, 0};
     if (kind % 8 == 1)
         frame.length--;
     if (kind % 8 == 2)
-        frame = (frame_t){pixels, 200, 10, 10, FRAME_RGB565};
+        frame = (frame_t){pixels, 200, 10, 10, FRAME_RGB565, 0};
     if (kind % 8 == 4)
-        frame = (frame_t){pixels, sizeof pixels, 40, 30, FRAME_RGB888};
-    const uint32_t frames = dock.counters.frames;
-    const bool injecting =
-        dock.link.injecting && clock_ms - dock.link.injected_ms <= 3000;
+        frame = (frame_t){pixels, sizeof pixels, 40, 30, FRAME_RGB888, 0};
+    const uint32_t frames = dock.decision.frames;
+    const bool injecting = dock.link.injection.state != INJECTION_OFF &&
+                           clock_ms - dock.link.injection.heard_ms <= 3000;
     dock_frame(&dock, kind % 8 == 3 ? NULL : &frame, clock_ms);
     if (injecting)
-        MUST(dock.counters.frames == frames);
+        MUST(dock.decision.frames == frames);
 }
 
 static void board(void)
@@ -204,12 +219,12 @@ static void board(void)
     const dock_request_t request = dock_take_request(&dock);
     MUST(request <= DOCK_REQUEST_REBOOT);
     if (request == DOCK_REQUEST_REBOOT)
-        MUST(dock.link.ack_count == 0 && !dock.link.saving);
+        MUST(dock.link.acks.count == 0 && dock.requests.save == SAVE_NONE);
     if (request == DOCK_REQUEST_SAVE) {
         uint8_t blob[SETTINGS_BLOB_BYTES];
         dock_settings_t read;
         settings_to_blob(&dock.settings, blob);
-        MUST(settings_from_blob(&read, blob, sizeof blob));
+        MUST(settings_from_blob(&read, blob, sizeof blob) == SETTINGS_READ);
         dock_saved(&dock, written);
     }
 }
@@ -252,7 +267,38 @@ static void make_plausible(uint32_t id, uint8_t *payload)
     } else if (id == MAVLINK_MSG_ID_ENCAPSULATED_DATA) {
         mavlink_encapsulated_data_t *packet =
             (mavlink_encapsulated_data_t *)payload;
-        packet->seqnr = dock.link.injected.next;
+        packet->seqnr = dock.link.injection.next;
+    }
+}
+
+/* The number that a PARAM_SET means: a float, or the bytes of an integer where
+ * its type says so and no float has them. */
+static double meant(const mavlink_param_set_t *set)
+{
+    const float value = set->param_value;
+    int8_t of8;
+    int16_t of16;
+    int32_t of32;
+    memcpy(&of8, &value, sizeof of8);
+    memcpy(&of16, &value, sizeof of16);
+    memcpy(&of32, &value, sizeof of32);
+    if (isnormal(value) || value == 0)
+        return value;
+    switch (set->param_type) {
+    case MAV_PARAM_TYPE_UINT8:
+        return (uint8_t)of8;
+    case MAV_PARAM_TYPE_INT8:
+        return of8;
+    case MAV_PARAM_TYPE_UINT16:
+        return (uint16_t)of16;
+    case MAV_PARAM_TYPE_INT16:
+        return of16;
+    case MAV_PARAM_TYPE_UINT32:
+        return (uint32_t)of32;
+    case MAV_PARAM_TYPE_INT32:
+        return of32;
+    default:
+        return NAN;
     }
 }
 
@@ -265,8 +311,8 @@ static void check_parameter_set(const uint8_t *payload)
         const parameter_t *p = &PARAMETERS[i];
         const int32_t was = parameter_get(p, &before.settings);
         const int32_t is = parameter_get(p, &dock.settings);
-        const double scaled = (double)set.param_value / p->numerator *
-                              (double)(UINT64_C(1) << p->shift);
+        const double scaled =
+            meant(&set) / p->numerator * (double)(UINT64_C(1) << p->shift);
         const double off = fabs(scaled - is);
         if (strncmp(p->name, set.param_id, sizeof set.param_id) != 0)
             MUST(is == was);
@@ -280,15 +326,14 @@ static void check_parameter_set(const uint8_t *payload)
 /* A command that is refused has done nothing but to be counted. */
 static void check_command(void)
 {
-    const link_t *link = &dock.link;
-    if (link->ack_count == before.link.ack_count)
+    const link_acks_t *acks = &dock.link.acks;
+    if (acks->count == before.link.acks.count)
         return;
-    const link_ack_t *ack = &link->acks[link->ack_count - 1];
-    if (ack->result == MAV_RESULT_ACCEPTED)
+    const uint8_t result = acks->waiting[acks->count - 1].result;
+    if (result == MAV_RESULT_ACCEPTED || result == MAV_RESULT_IN_PROGRESS)
         return;
-    memcpy(before.link.acks, link->acks, sizeof link->acks);
-    before.link.ack_count = link->ack_count;
-    before.link.faults = link->faults;
+    before.link.acks = *acks;
+    before.link.faults = dock.link.faults;
     must_be_as_before();
 }
 
@@ -406,8 +451,8 @@ static void step(void)
         board();
         break;
     case 6:
-        dock_set_camera(&dock,
-                        &(dock_camera_t){take16(), take8(), take8() % 2});
+        dock_set_camera(&dock, &(dock_camera_t){take16(), take8(), take8() % 2,
+                                                take8() % 2, take16()});
         break;
     default:
         flush();
@@ -429,8 +474,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     MUST(buffer != NULL);
     memset(&dock, 0xA5, sizeof dock);
     dock_init(&dock, &settings);
-    dock_set_board(&dock,
-                   &(dock_board_t){1, false, "01234567", buffer, BUFFER_BYTES});
+    dock_set_board(
+        &dock, &(dock_board_t){1, false, "01234567", buffer, BUFFER_BYTES, 1});
     for (int i = 0; i < MOST_STEPS && input_left > 0; i++) {
         step();
         must_be_sound();

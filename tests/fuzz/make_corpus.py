@@ -7,13 +7,16 @@ pymavlink packed.
 from __future__ import annotations
 
 import shutil
+import struct
 from pathlib import Path
 
 from chromadock import dialect as mavlink
 
 CORPUS = Path(__file__).parent / "corpus"
 RAW, MESSAGE, WAIT, SEND, CAMERA, BOARD, LOCK, FLUSH = range(8)
-LIST, READ, SET, COMMAND, HANDSHAKE, PACKET, UNKNOWN = range(7)
+LIST, READ, SET, COMMAND, HANDSHAKE, PACKET, UNKNOWN, PLACE, TYPED_LIST, TYPED_READ, TYPED_SET = (
+    range(11)
+)
 GOOD, BAD_CHECKSUM, TO_ANOTHER, FROM_THE_DOCK = 0, 4, 5, 6
 SIGNED, UNCUT, PLAUSIBLE, ALONE = 0x08, 0x10, 0x20, 0x40
 DOCK = (mavlink.DOCK_ID_SYSTEM, mavlink.DOCK_ID_COMPONENT)
@@ -68,6 +71,17 @@ class Host:
             mavlink.MAVLink_param_set_message(*target, name.encode("ascii"), value, real)
         )
 
+    def integer(self, name: str, value: int, kind: int) -> bytes:
+        """A PARAM_SET with an integer's own bytes."""
+        (number,) = struct.unpack("<f", (value & 0xFFFFFFFF).to_bytes(4, "little"))
+        return self.pack(
+            mavlink.MAVLink_param_set_message(*DOCK, name.encode("ascii"), number, kind)
+        )
+
+    def pack_1(self, one: mavlink.MAVLink_message) -> bytes:
+        """Any message's bytes in MAVLink 1."""
+        return bytes(one.pack(self.link, force_mavlink1=True))
+
     def pack(self, one: mavlink.MAVLink_message) -> bytes:
         """Any message's bytes."""
         return bytes(one.pack(self.link))
@@ -86,6 +100,11 @@ def entries() -> dict[str, bytes]:
         message(PACKET, PLAUSIBLE, bytes([0, 0, *[n] * 250])) for n in (10, 80, 200, 30)
     )
     announced = message(HANDSHAKE, PLAUSIBLE | ALONE, bytes([1, 31, 9, 0]))
+    tunnel = mavlink.MAVLink_tunnel_message(1, 1, 0, 45, [*limit.ljust(128, b"\0")])
+    request_list = mavlink.MAVLink_param_request_list_message(*DOCK)
+    list_1 = host.pack_1(request_list)
+    typed = b"\x32\1LED_LIMIT" + bytes(7) + b"\x80" + bytes(127)
+    interval = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
     snapshot = message(COMMAND, PLAUSIBLE, bytes([0] * 28 + [1, 0]))
     return {
         "list": raw(listing) + send(100) + send(),
@@ -98,7 +117,7 @@ def entries() -> dict[str, bytes]:
             )
         ),
         "set_checked": b"".join(
-            message(SET, PLAUSIBLE | ALONE, b"\0\0\x20\x41\0\0" + bytes([n])) for n in range(26)
+            message(SET, PLAUSIBLE | ALONE, b"\0\0\x20\x41\0\0" + bytes([n])) for n in range(27)
         ),
         "others": raw(host.set("LED_LIMIT", 7, (51, 1))) + raw(host.set("LED_LIMIT", 7, (0, 0))),
         "inert": b"".join(
@@ -133,6 +152,25 @@ def entries() -> dict[str, bytes]:
         "signed": raw(signed.set("LED_LIMIT", 7)) + raw(signed.command(led, 2, 1, 2, 3)) + send(),
         "noise": raw(text + limit + text) + wait(201) + raw(limit[:20]) + raw(limit) + wait(201)
         + raw(b"\xfd" * 280) + raw(limit) + bytes([FLUSH]) + send(),
+        "carried": raw(host.pack(tunnel)) + bytes([FLUSH]) + send()
+        + raw(b"\xfd\x23\0\0\1\1\1\x0c\x2b\0" + limit + b"\0\0" + read) + send(),
+        "version_1": raw(list_1) + raw(list_1[:5]) + raw(read) + send(),
+        "integers": b"".join(raw(host.integer(*three)) + send() for three in (
+            ("LED_LIMIT", 128, 6), ("CAM_GAIN", -1, 2), ("CAM_GAIN", 0xFF, 2),
+            ("WINDOW_MS", 1500, 3), ("LED_LIMIT", 128, 9), ("LINK_BAUD", 9600, 5),
+        )),
+        "typed": message(TYPED_LIST, 0, b"\x32\1") + send(200)
+        + message(TYPED_READ, 0, b"\3\0\x32\1") + message(TYPED_SET, 0, typed + b"\6") + send()
+        + message(TYPED_SET, 0, typed + b"\x0b") + send(),
+        "place": message(PLACE, 0, b"\0\0\0\x40" + bytes(24) + b"\x9c\x7c") + send(),
+        "intervals": raw(host.command(interval, 42500, 1e5)) + wait(100) + send()
+        + raw(host.command(mavlink.MAV_CMD_GET_MESSAGE_INTERVAL, 42500)) + send()
+        + raw(host.command(interval, 0, -1)) + send(),
+        "snapshot_again": snapshot + frame(0, 1, 2, 3) + send()
+        + raw(host.command(mavlink.MAV_CMD_DOCK_SNAPSHOT, 1, 0, 1)) + send(300) + send()
+        + snapshot + wait(5001) + frame(0, 1, 2, 3) + send(),
+        "led_limit_in_time": raw(host.command(led, 2, 9, 9, 9)) + wait(65535) * 10 + send(),
+        "broadcast": raw(host.command(REBOOT, 1, target=(0, 0))) + bytes([BOARD, 0]) + send(),
         "pieces": b"".join(message(LIST, UNCUT, b"", n) + send(60) for n in (1, 3, 13)),
         "wrap": (wait(900) + send(200)) * 6,
         "unknown": message(UNKNOWN, SIGNED, b"\1\2\3") + raw(heartbeat) + send(),

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 from simulation import chromadock, running_dock
 
 from chromadock import dialect, method
+from chromadock.cli import dock_status
 from chromadock.link import Connection, DockClient, pictures
 from chromadock.link import discovery as discovery_module
 from chromadock.link.messenger import Messenger
@@ -45,6 +47,8 @@ def dock(url, capsys):
     with DockClient(Connection(url)) as client:
         client.led_auto()
         client.reset()
+        client.set_parameter("LED_LIMIT", 255)
+        client.set_parameter("LED_ANODE", 0)
 
 
 def status_of(url):
@@ -59,6 +63,23 @@ def test_info_tells_version_method_and_state(dock, url):
     assert method.DIGEST in out
     assert "#29a2ce  195.9°" in out
     assert re.search(r"faults +none", out)
+    assert re.search(r"sensor +OV2640 *\n", out)
+    assert re.search(r"locked +yes, the picture followed", out)
+
+
+@pytest.mark.parametrize(
+    ("number", "says"),
+    [
+        (0x26, "OV2640"),
+        (0x3660, "OV3660, unproven"),
+        (0x5640, "OV5640, unproven"),
+        (0x2145, "GC2145, unfit"),
+        (0x9B, "unknown 0x9b, unproven"),
+        (0, "none"),
+    ],
+)
+def test_a_sensor_is_named_with_what_is_known_of_it(number, says):
+    assert dock_status.sensor(SimpleNamespace(sensor=number)).startswith(says)
 
 
 def test_watch_prints_a_line_a_second_where_stdout_is_no_terminal(dock):
@@ -122,9 +143,17 @@ def test_params_load_sets_all_of_a_file(dock, tmp_path):
 
 
 def test_params_reset_brings_the_defaults_back(dock):
-    dock("params", "set", "LED_LIMIT", 9)
+    dock("params", "set", "WINDOW_MS", 900)
     dock("params", "reset")
-    assert "= 255 " in dock("params", "get", "LED_LIMIT")
+    assert "= 2000 " in dock("params", "get", "WINDOW_MS")
+
+
+def test_params_reset_leaves_brightness_and_polarity_to_the_wiring(dock):
+    dock("params", "set", "LED_LIMIT", 9)
+    dock("params", "set", "LED_ANODE", 1)
+    dock("params", "reset")
+    assert "= 9 " in dock("params", "get", "LED_LIMIT")
+    assert "= low pin lights" in dock("params", "get", "LED_ANODE")
 
 
 def test_what_is_saved_outlasts_a_reboot_and_what_is_not_does_not(dock):
@@ -139,12 +168,12 @@ def test_what_is_saved_outlasts_a_reboot_and_what_is_not_does_not(dock):
 
 def test_led_shows_raw_duties_a_hue_or_the_marker(dock, url):
     dock("led", 255, 0, 128)
-    assert list(status_of(url).duty) == [0, 4096, 2040]  # common anode: low lights
+    assert list(status_of(url).duty) == [4096, 0, 2056]
     assert status_of(url).led_mode == dialect.DOCK_LED_RAW
     dock("led", 120)
-    assert list(status_of(url).duty) == [4096, 0, 4096]
+    assert list(status_of(url).duty) == [0, 4096, 0]
     dock("led", "auto")
-    assert list(status_of(url).duty) == [0, 4096, 2026]
+    assert list(status_of(url).duty) == [4096, 0, 2070]
     assert status_of(url).led_mode == dialect.DOCK_LED_AUTO
 
 

@@ -2,8 +2,10 @@
 
 import struct
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pymavlink.generator.mavcrc import x25crc
 from simulation import heartbeat, packed
 
 from chromadock import dialect
@@ -149,3 +151,23 @@ def test_fields_come_as_they_were_sent():
     assert (message.param_value, message.param_index) == (7.0, 7)
     assert message.get_srcSystem() == dialect.DOCK_ID_SYSTEM
     assert struct.pack("<f", message.param_value) in packed(value(7))
+
+
+def around(inner, number, crc_extra):
+    """A message of any id whose payload is another one, whole."""
+    header = bytes([0xFD, len(inner), 0, 0, 7, 1, 1]) + number.to_bytes(3, "little")
+    crc = x25crc(header[1:] + inner)
+    crc.accumulate(bytes([crc_extra]))
+    return header + inner + crc.crc.to_bytes(2, "little")
+
+
+@pytest.mark.parametrize("number", [dialect.MAVLINK_MSG_ID_TUNNEL, 11020])
+def test_what_another_message_carries_is_not_found(number):
+    inner = packed(dialect.MAVLink_param_value_message(b"LED_LIMIT", 1.0, 9, 27, 18))
+    known = dialect.mavlink_map.get(number)
+    outer = around(inner.ljust(133, b"\0"), number, known.crc_extra if known else 99)
+    finder = FrameFinder()
+    found = finder.feed(outer + outer + inner)
+    assert [m.get_type() for m in found if m.get_type() != "TUNNEL"] == ["PARAM_VALUE"]
+    finder.feed(outer)
+    assert finder.give_up() == []

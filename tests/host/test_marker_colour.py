@@ -25,6 +25,19 @@ def painted(colour: str | None) -> DockGeometry:
     return DockGeometry(DOCK.names, DOCK.points, "painted.toml", colour)
 
 
+def test_near_the_limit_of_grey_the_detector_expects_one_hue_and_none_between() -> None:
+    detector, seen = Detector(None, DOCK), []
+    for number in range(60):
+        frame = GREY_WATER if number % 3 == 2 or number >= 30 else BLUE_WATER
+        seen.append(detector.process(frame, 0.1 * number).marker.hue_deg)
+    blue = expecting().marker.hue_deg
+    assert seen[:30] == pytest.approx([blue] * 30)
+    changed = seen.index(120.0)
+    assert changed in (38, 39)  # a second after the last blue frame
+    assert seen[:changed] == pytest.approx([blue] * changed)
+    assert set(seen[changed:]) == {120.0}
+
+
 @pytest.mark.parametrize(
     ("text", "kind", "hue_deg", "shown"),
     [

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
+import struct
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,9 +17,14 @@ from mavproxy import MavProxy
 from pymavlink import mavutil
 from simulator import Simulator
 
+from chromadock.link.values import step
 from chromadock.parameter_table import PARAMETERS
 
+ROOT = Path(__file__).resolve().parents[2]
+MAVSDK = ROOT / "build" / "mavsdk"
 TIMEOUT_S = 20.0
+WHOLE = [p.name for p in PARAMETERS if step(p) == 1.0]
+"""Parameters whose every value is a whole number."""
 
 
 @pytest.fixture
@@ -85,6 +95,43 @@ def test_mavutil_is_told_the_range_of_a_value_refused(ground_station) -> None:
     assert text.severity == mavutil.mavlink.MAV_SEVERITY_WARNING
 
 
+@pytest.mark.parametrize("kind", [mavutil.mavlink.MAV_PARAM_TYPE_INT32])
+def test_mavutil_sets_whole_numbers_by_their_bytes(ground_station, kind: int) -> None:
+    link = ground_station
+    for p in PARAMETERS:
+        for value in (p.minimum, p.maximum):
+            if p.name not in WHOLE:
+                continue
+            (number,) = struct.unpack("<f", struct.pack("<i", int(value)))
+            link.param_set_send(p.name, number, kind)
+            assert value_of(link, p.name) == value
+
+
+@pytest.mark.parametrize("protocol", ["v1", "ext"])
+def test_mavsdk_sets_and_reads_every_parameter(tcp_dock: str, protocol: str) -> None:
+    """Integers by the protocol that has them; by the other one all are floats."""
+    if not MAVSDK.is_dir():
+        pytest.skip("mavsdk: not in build/mavsdk: run make setup")
+    wanted = [[p.name, p.minimum, p.maximum, p.name in WHOLE] for p in PARAMETERS]
+    done = subprocess.run(
+        [sys.executable, ROOT / "tests" / "mavsdk_parameters.py", tcp_dock.split(":")[2], protocol],
+        env={**os.environ, "PYTHONPATH": str(MAVSDK)},
+        input=json.dumps(wanted) + "\n",
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("[{")]
+    read, (integers, floats) = json.loads(line)
+    assert read == {
+        p.name: [pytest.approx(p.minimum, abs=1e-4), pytest.approx(p.maximum, abs=1e-4)]
+        for p in PARAMETERS
+    }
+    assert sorted(integers + floats) == sorted(p.name for p in PARAMETERS)
+    assert sorted(integers) == (sorted(WHOLE) if protocol == "ext" else [])
+
+
 @pytest.fixture
 def mavproxy(tcp_dock: str, tmp_path: Path) -> Iterator[MavProxy]:
     folder = tmp_path / "mavproxy"
@@ -110,6 +157,18 @@ def test_mavproxy_lists_parameters_sets_one_and_shows_status_text(mavproxy: MavP
             break
     else:
         pytest.fail("WINDOW_MS was not set")
+
+    for p in PARAMETERS:
+        if p.name in ("REPORT_HZ", "LINK_BAUD"):  # the first is refused below
+            continue
+        mavproxy.type(f"param set {p.name} {p.maximum:g}")
+        shown = rf"{p.name} = (-?[\d.]+)\n"
+        for _ in range(20):
+            mavproxy.type(f"param fetch {p.name}")
+            if float(mavproxy.expect(shown)[1]) == pytest.approx(p.maximum, abs=1e-3):
+                break
+        else:
+            pytest.fail(f"{p.name} was not set")
 
     mavproxy.type("param set REPORT_HZ 31")
     mavproxy.expect(r"REPORT_HZ refused: allowed 0 to 30")

@@ -34,6 +34,7 @@ class Bench:
 
     def __init__(self, *faults, start_s=0.0, source=None, **options):
         self.now_s = start_s
+        options.setdefault("save_s", 0.1)
         self.dock = SimulatedDock(
             open_camera(source), faults=[parse_fault(f) for f in faults], now_s=start_s, **options
         )
@@ -68,10 +69,14 @@ class Bench:
         return self.all("COMMAND_ACK")[-1].result
 
 
-def limit(value):
+def parameter(name, value):
     return dialect.MAVLink_param_set_message(
-        50, 1, b"LED_LIMIT", value, dialect.MAV_PARAM_TYPE_REAL32
+        50, 1, name.encode(), value, dialect.MAV_PARAM_TYPE_REAL32
     )
+
+
+def limit(value):
+    return parameter("LED_LIMIT", value)
 
 
 def led_limit(bench):
@@ -97,10 +102,10 @@ def test_the_camera_is_locked_after_settling():
 
 def test_its_leds_are_dark_until_the_first_frame_then_show_the_marker():
     bench = Bench()
-    assert bench.dock.duties == (4096, 4096, 4096)  # common anode
+    assert bench.dock.duties == (0, 0, 0)
     bench.run(0.5)
-    assert bench.dock.duties == (0, 4096, 2026)
-    assert list(bench.status().duty) == [0, 4096, 2026]
+    assert bench.dock.duties == (4096, 0, 2070)
+    assert list(bench.status().duty) == [4096, 0, 2070]
 
 
 @pytest.mark.parametrize("fps", [0.1, 1, 30])
@@ -147,6 +152,25 @@ def test_settings_that_cannot_be_saved_are_reported(tmp_path):
     assert bench.status().faults & dialect.DOCK_FAULT_STORAGE
 
 
+def test_saving_takes_as_long_as_on_a_board_and_the_camera_waits():
+    bench = Bench(fps=10, save_s=2).run(1).send(SAVE)
+    frames = bench.status().frames
+    assert bench.result() == dialect.MAV_RESULT_IN_PROGRESS
+    bench.run(1.5)
+    assert bench.status().frames <= frames + 1
+    assert bench.result() == dialect.MAV_RESULT_IN_PROGRESS
+    bench.run(1.5)
+    assert bench.status().frames > frames + 5
+    assert bench.result() == dialect.MAV_RESULT_ACCEPTED
+
+
+def test_power_that_is_lost_while_saving_leaves_the_old_settings(tmp_path):
+    file = tmp_path / "flash"
+    bench = Bench("reboot@2s", settings=file, save_s=1).run(1.5).send(limit(100), SAVE).run(3)
+    assert led_limit(bench) == 255
+    assert not file.exists()
+
+
 def test_the_storage_fault_begins_at_its_time():
     bench = Bench("storage@2s").run(1).send(SAVE)
     assert bench.result() == dialect.MAV_RESULT_ACCEPTED
@@ -178,6 +202,60 @@ def test_a_lost_camera_leaves_the_colour_and_the_link_as_they_were():
     assert bench.dock.duties == duties
     assert bench.status().frames <= frames + 1
     assert led_limit(bench) == 255
+
+
+def dark_picture(folder):
+    file = folder / "night.png"
+    cv2.imwrite(str(file), np.zeros((HEIGHT, WIDTH, 3), np.uint8))
+    return str(file)
+
+
+@pytest.mark.parametrize("own_light", [0.003, 0.01, 0.05])
+def test_at_night_it_does_not_follow_its_own_light_and_says_so(tmp_path, own_light):
+    bench = Bench(source=dark_picture(tmp_path), own_light=own_light).run(30)
+    since = len(bench.all("DOCK_STATUS"))
+    bench.run(60)
+    assert {s.marker_hue for s in bench.all("DOCK_STATUS")[since:]} == {512}
+    assert bench.status().faults == dialect.DOCK_FAULT_OWN_LIGHT
+
+
+def test_its_leds_go_out_for_a_frame_now_and_then_and_never_for_long(tmp_path):
+    bench = Bench(source=dark_picture(tmp_path), own_light=0.05).run(1)
+    dark, longest_s, out_s = None, 0.0, 0.0
+    for _ in range(12_000):
+        bench.run(0.005, step_s=0.005)
+        if bench.dock.lamps == (0, 0, 0):
+            dark = bench.now_s if dark is None else dark
+        elif dark is not None:
+            longest_s = max(longest_s, bench.now_s - dark)
+            out_s, dark = out_s + bench.now_s - dark, None
+    assert 0.05 < longest_s < 0.2
+    assert 0 < out_s <= 0.02 * 60
+
+
+def test_without_own_light_all_frames_decide(tmp_path):
+    bench = Bench(own_light=0.0).run(90)
+    assert bench.status().faults == 0
+
+
+def test_a_camera_lost_from_the_start_leaves_the_fallback_after_15_seconds():
+    bench = Bench("camera-lost@0s").run(14)
+    assert bench.dock.lamps == (0, 0, 0)
+    bench.run(3)
+    assert bench.dock.lamps == (0, 1, 0)
+    assert bench.status().frame_rate_dhz == bench.status().confidence == 0
+
+
+def test_the_hue_comes_back_after_a_reboot_but_not_after_a_loss_of_power():
+    for restart, lamps in ((REBOOT, "before"), (None, (0, 1, 0))):
+        faults = ["camera-lost@2s"] + ([] if restart else ["reboot@3s"])
+        bench = Bench(*faults).run(1.5)
+        before = bench.dock.lamps
+        bench.run(1)
+        if restart:
+            bench.send(restart)
+        bench.run(25)
+        assert bench.dock.lamps == (before if lamps == "before" else lamps)
 
 
 def test_the_reboot_fault_starts_it_anew():
@@ -402,3 +480,13 @@ def test_a_client_that_leaves_within_a_message_does_no_harm_to_the_next_one():
         os.close(fd)
         with DockClient(Connection(url)) as client:
             assert client.parameter("LED_LIMIT") == 255
+
+
+def test_a_camera_at_rest_gives_a_frame_each_interval_and_wakes_when_it_is_changed():
+    bench = Bench().run(2)
+    frames = bench.status().frames
+    bench.send(parameter("DECISION_MS", 5000)).run(20)
+    assert 2 <= bench.status().frames - frames <= 8
+    frames = bench.status().frames
+    bench.send(parameter("DECISION_MS", 0)).run(2)
+    assert bench.status().frames - frames == pytest.approx(21, abs=3)

@@ -12,7 +12,7 @@ from chromadock import method
 from chromadock.choices import MAPPINGS
 from chromadock.colour.background import background_colour
 from chromadock.colour.hsv import rgb_from_hsv
-from chromadock.colour.marker import RollingHue, marker_hue
+from chromadock.colour.marker import RollingHue, SteadyHue, marker_hue
 from chromadock_firmware import Dock, Settings, ffi, lib
 
 
@@ -67,6 +67,21 @@ def test_rolling_mean_in_numpy_and_c(golden: dict[str, Any]) -> None:
             where = (vector["name"], now_ms)
             assert rolling.add(hue, now_ms) == mean, where
             assert lib.rolling_add(state, hue, now_ms, vector["window_ms"]) == mean, where
+
+
+def test_the_hue_shown_for_decisions_of_both_kinds_in_numpy_and_c(golden: dict[str, Any]) -> None:
+    assert len(golden["steady"]) >= 9
+    for vector in golden["steady"]:
+        steady = SteadyHue(vector["window_ms"])
+        state = ffi.new("steady_t *")
+        lib.steady_init(state)
+        for (now_ms, meaningful, hue), shown in zip(
+            vector["decisions"], vector["shown"], strict=True
+        ):
+            where = (vector["name"], now_ms)
+            assert steady.add(meaningful, hue, now_ms) == shown, where
+            lib.steady_add(state, meaningful, hue, vector["window_ms"], now_ms)
+            assert state.shown == shown, where
 
 
 def test_led_duties_in_c(golden: dict[str, Any]) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import reference
 from comparison import of_hue
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from chromadock.choices import MAPPINGS
 from chromadock.colour.hsv import hue_of_vector, rgb_from_hsv
-from chromadock.colour.marker import RollingHue, marker_hue
+from chromadock.colour.marker import RollingHue, SteadyHue, marker_hue
 from chromadock_firmware import ffi, lib
 
 HUE = st.integers(0, lib.METHOD_HUE_RANGE - 1)
@@ -47,6 +48,24 @@ def test_rolling_means_with_any_pace_and_any_clock(
         assert lib.rolling_add(state, hue, now_ms, window_ms) == rolling.add(hue, now_ms)
 
 
+@given(
+    start=st.integers(0, 2**32 - 1),
+    decisions=st.lists(
+        st.tuples(st.integers(-50, 1500), st.booleans(), HUE), min_size=1, max_size=150
+    ),
+)
+def test_decisions_of_both_kinds_with_any_pace_and_any_clock(
+    start: int, decisions: list[tuple[int, bool, int]]
+) -> None:
+    state = ffi.new("steady_t *")
+    lib.steady_init(state)
+    steady, now_ms = SteadyHue(), start
+    for step, meaningful, hue in decisions:
+        now_ms = (now_ms + step) % 2**32
+        lib.steady_add(state, meaningful, hue, lib.METHOD_WINDOW_MS, now_ms)
+        assert state.shown == steady.add(meaningful, hue, now_ms)
+
+
 @given(HUE, st.lists(st.integers(0, 2000), max_size=40))
 def test_the_mean_of_one_hue_is_that_hue(hue: int, steps: list[int]) -> None:
     rolling, now_ms = RollingHue(), 0
@@ -70,13 +89,21 @@ def test_duties_stay_in_range_and_polarity_mirrors_them(
         led = ffi.new("led_settings_t *", (offset, matrix, gamma, limit, common_anode))
         settings = ffi.new("dock_settings_t *", lib.dock_default_settings())
         settings.led = led[0]
-        assert lib.dock_settings_are_valid(settings)
+        assert lib.dock_mend_settings(settings) == 0
         duty = ffi.new("uint16_t[3]")
         lib.led_duties(duty, hue, led)
         duties.append(np.array(list(duty)))
     assert (duties[0] <= lib.LED_FULL).all()
     assert (duties[0] + duties[1] == lib.LED_FULL).all()
     assert (duties[0] <= np.ceil(lib.LED_FULL * limit / 255)).all()
+
+
+@given(st.integers(0, 255), st.integers(0, 255), st.integers(0, 255))
+def test_the_limit_in_water_of_any_value(limit: int, dark: int, value: int) -> None:
+    led = ffi.new("led_settings_t *", {"limit": limit, "dark_limit": dark})
+    dimmed = lib.led_dimmed(led, value).limit
+    assert dimmed == reference.dimmed_limit(limit, dark, value)
+    assert min(limit, dark) <= dimmed <= limit
 
 
 @given(HUE, st.integers(0, 255), st.integers(0, 255))

@@ -7,8 +7,10 @@
 
 #include <unity.h>
 
+#include <algorithm>
 #include <deque>
 #include <functional>
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,6 +22,7 @@
 #include <driver/ledc.h>
 #include <driver/uart.h>
 #include <esp_camera.h>
+#include <esp_partition.h>
 #include <esp_system.h>
 #include <esp_task_wdt.h>
 #include <esp_timer.h>
@@ -29,10 +32,18 @@
 #include <nvs.h>
 #include <nvs_flash.h>
 
+#include "../../firmware/esp32cam/core.h"
+
 enum { FOREVER = -1, GRAB_TIMEOUT_MS = 4000 };
 
 /* What esp_restart throws, which does not return. */
 struct Restarted {};
+
+/* What it throws where the loader hangs after it. */
+struct Hung {};
+
+/* What a flash write throws when the power fails in it. */
+struct PowerLost {};
 
 struct FakeSensor {
     sensor_t driver;
@@ -44,11 +55,27 @@ struct FakeSensor {
     bool deaf;                          /* takes commands, keeps its values */
     std::string broken;                 /* the command that it does not take */
     int changed_gains; /* added to the white balance gains read back */
+    int pid;           /* another sensor than the OV2640; 0: that */
+    bool unmoved;      /* its picture does not follow its exposure */
+    bool standby;      /* it gives no frames */
 };
 
 struct FakeBuffer {
     camera_fb_t driver;
     bool out;
+};
+
+/* NVS, and the first sector of the partition "spiffs". */
+struct FakeFlash {
+    esp_err_t init_error, open_error, get_error, set_error, commit_error;
+    bool stored; /* NVS has the blob */
+    std::string blob;
+    bool torn; /* power lost in NVS leaves half a blob */
+    int handles_open;
+    bool without_sector; /* another partition table */
+    esp_err_t erase_error, write_error;
+    std::string sector;
+    int power; /* writes until it fails; FOREVER: it does not */
 };
 
 struct FakeBoard {
@@ -71,10 +98,7 @@ struct FakeBoard {
     ledc_channel_config_t channel[LEDC_CHANNEL_MAX];
     uint32_t duty[LEDC_CHANNEL_MAX], new_duty[LEDC_CHANNEL_MAX];
 
-    esp_err_t flash_error, open_error, get_error, set_error, commit_error;
-    bool stored;
-    std::string blob;
-    int handles_open;
+    FakeFlash flash;
 
     uart_config_t uart;
     std::string received, sent;
@@ -84,6 +108,8 @@ struct FakeBoard {
     uint32_t watchdog_ms;
     bool watchdog_panics, watchdog_watching, watchdog_started;
     int feeds;
+
+    uint32_t cpu_mhz;
 
     std::function<void()> while_waiting;
     TaskFunction_t task;
@@ -140,16 +166,35 @@ inline void assert_in_order(const std::vector<std::string> &lines)
     }
 }
 
+/* The driver is on and has a buffer to fill. */
+inline bool camera_writes_memory()
+{
+    return board.camera_on && !(board.buffers[0].out && board.buffers[1].out);
+}
+
 extern "C" {
+
+bool setCpuFrequencyMhz(uint32_t mhz)
+{
+    TEST_ASSERT_GREATER_OR_EQUAL_MESSAGE(80, mhz, "the LEDs' clock");
+    TEST_ASSERT_FALSE_MESSAGE(camera_writes_memory(), "while it captures");
+    note("cpu", mhz);
+    board.cpu_mhz = mhz;
+    return true;
+}
 
 int64_t esp_timer_get_time(void)
 {
     return board.us;
 }
 
+/* Resets no peripheral: where the camera's DMA runs it goes on writing, over
+ * the memory of the loader. */
 void esp_restart(void)
 {
     note("esp_restart");
+    if (camera_writes_memory())
+        throw Hung();
     throw Restarted();
 }
 
@@ -204,68 +249,6 @@ esp_err_t ledc_update_duty(ledc_mode_t, ledc_channel_t channel)
 {
     board.duty[channel] = board.new_duty[channel];
     return ESP_OK;
-}
-
-esp_err_t nvs_flash_init(void)
-{
-    note("nvs_flash_init");
-    const esp_err_t error = board.flash_error;
-    board.flash_error = ESP_OK;
-    return error;
-}
-
-esp_err_t nvs_flash_erase(void)
-{
-    note("nvs_flash_erase");
-    board.stored = false;
-    return ESP_OK;
-}
-
-esp_err_t nvs_open(const char *name, nvs_open_mode_t mode, nvs_handle_t *handle)
-{
-    note(std::string("nvs_open ") + name);
-    if (board.open_error != ESP_OK)
-        return board.open_error;
-    if (mode == NVS_READONLY && !board.stored)
-        return ESP_ERR_NVS_NOT_FOUND;
-    ++board.handles_open;
-    *handle = 7;
-    return ESP_OK;
-}
-
-esp_err_t nvs_get_blob(nvs_handle_t, const char *key, void *value,
-                       size_t *length)
-{
-    note(std::string("nvs_get_blob ") + key);
-    if (board.get_error != ESP_OK)
-        return board.get_error;
-    if (*length < board.blob.size())
-        return ESP_ERR_NVS_INVALID_LENGTH;
-    *length = board.blob.size();
-    memcpy(value, board.blob.data(), board.blob.size());
-    return ESP_OK;
-}
-
-esp_err_t nvs_set_blob(nvs_handle_t, const char *key, const void *value,
-                       size_t length)
-{
-    note(std::string("nvs_set_blob ") + key);
-    if (board.set_error != ESP_OK)
-        return board.set_error;
-    board.blob.assign(static_cast<const char *>(value), length);
-    board.stored = true;
-    return ESP_OK;
-}
-
-esp_err_t nvs_commit(nvs_handle_t)
-{
-    note("nvs_commit");
-    return board.commit_error;
-}
-
-void nvs_close(nvs_handle_t)
-{
-    --board.handles_open;
 }
 
 esp_err_t uart_driver_install(uart_port_t, int receive_bytes, int, int,
@@ -361,83 +344,14 @@ esp_err_t esp_task_wdt_reset(void)
     return ESP_OK;
 }
 
-TaskHandle_t xTaskCreateStaticPinnedToCore(TaskFunction_t code, const char *,
-                                           uint32_t, void *, UBaseType_t,
-                                           StackType_t *, StaticTask_t *,
-                                           BaseType_t core)
-{
-    note("xTaskCreateStaticPinnedToCore");
-    board.task = code;
-    board.task_core = core;
-    return nullptr;
-}
-
-void vTaskDelay(TickType_t ticks)
-{
-    pass_ms(ticks);
-}
-
-/* A queue of one element. */
-struct QueueDefinition {
-    uint8_t *storage;
-    size_t size;
-    bool full;
-};
-
-QueueHandle_t xQueueGenericCreateStatic(UBaseType_t length, UBaseType_t size,
-                                        uint8_t *storage, StaticQueue_t *state,
-                                        uint8_t)
-{
-    static_assert(sizeof(QueueDefinition) <= sizeof(StaticQueue_t), "room");
-    TEST_ASSERT_EQUAL_UINT(1, length);
-    QueueHandle_t queue = reinterpret_cast<QueueHandle_t>(state);
-    queue->storage = storage;
-    queue->size = size;
-    queue->full = false;
-    return queue;
-}
-
-BaseType_t xQueueGenericSend(QueueHandle_t queue, const void *item,
-                             TickType_t wait, BaseType_t position)
-{
-    if (queue->full && position != queueOVERWRITE) {
-        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, wait, "would wait for ever");
-        return pdFALSE;
-    }
-    memcpy(queue->storage, item, queue->size);
-    queue->full = true;
-    return pdTRUE;
-}
-
-/* Who waits without end lets the other task work. */
-inline void wait_until_full(QueueHandle_t queue, TickType_t wait)
-{
-    for (int turns = 0; wait == portMAX_DELAY && !queue->full; turns++) {
-        TEST_ASSERT_TRUE_MESSAGE(board.while_waiting && turns < 100,
-                                 "would wait for ever");
-        board.while_waiting();
-    }
-    if (!queue->full)
-        pass_ms(wait);
-}
-
-BaseType_t xQueuePeek(QueueHandle_t queue, void *item, TickType_t wait)
-{
-    wait_until_full(queue, wait);
-    if (!queue->full)
-        return pdFALSE;
-    memcpy(item, queue->storage, queue->size);
-    return pdTRUE;
-}
-
-BaseType_t xQueueReceive(QueueHandle_t queue, void *item, TickType_t wait)
-{
-    const BaseType_t got = xQueuePeek(queue, item, wait);
-    queue->full = false;
-    return got;
-}
-
 } /* extern "C" */
+
+EspClass ESP;
+
+uint64_t EspClass::getEfuseMac()
+{
+    return UINT64_C(0x240AC4123456);
+}
 
 /* Unity leaves a test that failed by a jump over its destructors. What leaks is
  * the suite's: the firmware's shell allocates nothing. */
@@ -447,15 +361,19 @@ extern "C" const char *__asan_default_options()
 }
 
 #include "fake_camera.h"
+#include "fake_flash.h"
+#include "fake_rtos.h"
 
 /* A board that nobody has touched, with everything in order. */
 inline void board_reset()
 {
     board = FakeBoard();
+    board.flash = blank_flash();
     board.frame_ms = 80;
     board.frame_age_us = 40000;
     board.sensor.settled_exposure = 300;
     board.sensor.settled_gain = 5;
+    board.cpu_mhz = 240;
     board.fifo = 128;
     board.wire_idle = true;
     board.watchdog_started = true;

@@ -15,6 +15,16 @@ inline camera_order_t standard_order()
     return order;
 }
 
+/* Water of one colour; green up to 63. */
+inline void paint(int red, int green, int blue)
+{
+    const int word = red << 11 | green << 5 | blue;
+    for (size_t i = 0; i < sizeof board.pixels; i += 2) {
+        board.pixels[i] = static_cast<uint8_t>(word >> 8);
+        board.pixels[i + 1] = static_cast<uint8_t>(word);
+    }
+}
+
 /* Steps, as the camera's task does them, until such a report comes; its frame
  * is given back. */
 inline camera_report_t step_until(Camera &camera, camera_event_t event,

@@ -4,24 +4,10 @@
 
 #include "camera_fixture.h"
 
-/* DOCK_FAULT_SETTINGS and DOCK_FAULT_STORAGE of shared/chromadock.xml. */
-enum { FAULT_SETTINGS = 4, FAULT_STORAGE = 8 };
-
-inline void store_settings(const dock_settings_t &settings)
-{
-    uint8_t blob[SETTINGS_BLOB_BYTES];
-    settings_to_blob(&settings, blob);
-    board.blob.assign(reinterpret_cast<const char *>(blob), sizeof blob);
-    board.stored = true;
-}
-
 /* Pure green water: the marker is blue. */
 inline void paint_water()
 {
-    for (size_t i = 0; i < sizeof board.pixels; i += 2) {
-        board.pixels[i] = 0x07;
-        board.pixels[i + 1] = 0xE0;
-    }
+    paint(0, 40, 0);
 }
 
 /* Power on, to the end of setup(), on the board as it has been prepared. */
@@ -30,6 +16,7 @@ inline void start_dock()
     camera = Camera();
     colour = Loop(&dock);
     board.while_waiting = loop;
+    init_arduino();
     setup();
 }
 
@@ -55,14 +42,19 @@ inline void run_for(int64_t ms)
 
 inline void run_to_first_frame()
 {
-    while (!dock.decided && now_ms() < 60000)
+    while (!dock.decision.decided && now_ms() < 60000)
         turn_both();
-    TEST_ASSERT_TRUE(dock.decided);
+    TEST_ASSERT_TRUE(dock.decision.decided);
 }
 
 inline void request(dock_request_t what)
 {
-    dock.requests |= static_cast<uint8_t>(1u << what);
+    if (what == DOCK_REQUEST_SAVE)
+        requests_save(&dock.requests);
+    else if (what == DOCK_REQUEST_CAMERA)
+        requests_camera(&dock.requests);
+    else
+        requests_reboot(&dock.requests);
 }
 
 #endif

@@ -30,7 +30,7 @@ static void test_the_polarity_is_the_stored_one_from_the_first(void)
     board_reset();
     dock_settings_t settings = dock_default_settings();
     settings.led.common_anode = false;
-    store_settings(settings);
+    store_in_nvs(blob_of(settings));
 
     start_dock();
 
@@ -47,7 +47,7 @@ static void test_the_leds_stay_dark_to_the_first_decision(void)
 {
     start_fresh_dock();
 
-    while (!dock.decided) {
+    while (!dock.decision.decided) {
         for (int i = 0; i < 3; i++)
             TEST_ASSERT_EQUAL_UINT32(0, board.duty[i]);
         turn_both();
@@ -59,7 +59,7 @@ static void test_the_port_has_the_stored_speed(void)
     board_reset();
     dock_settings_t settings = dock_default_settings();
     settings.link_baud = 115200;
-    store_settings(settings);
+    store_in_nvs(blob_of(settings));
 
     start_dock();
 
@@ -71,22 +71,42 @@ static void test_the_port_has_the_stored_speed(void)
 static void test_corrupt_settings_start_the_default_dock_and_say_so(void)
 {
     board_reset();
-    store_settings(dock_default_settings());
-    board.blob[9] = static_cast<char>(board.blob[9] ^ 4);
+    store_in_both(blob_of(dock_default_settings()));
+    board.flash.blob[9] ^= 4;
+    board.flash.sector[99] ^= 4;
 
     start_dock();
 
-    TEST_ASSERT_TRUE(dock.board.settings_corrupt);
-    TEST_ASSERT_NOT_EQUAL(0, dock.faults & FAULT_SETTINGS);
+    TEST_ASSERT_EQUAL_INT(DOCK_STORED_LOST, dock.board.settings);
     TEST_ASSERT_EQUAL_INT(921600, board.uart.baud_rate);
+}
+
+static void test_memory_that_arduino_erases_is_restored_and_told(void)
+{
+    board_reset();
+    dock_settings_t settings = dock_default_settings();
+    settings.link_baud = 115200;
+    settings.led.common_anode = true;
+    store_in_both(blob_of(settings));
+    board.flash.init_error = ESP_ERR_NVS_NEW_VERSION_FOUND;
+
+    start_dock();
+
+    TEST_ASSERT_EQUAL_INT(1, count_in_log("NVS erased by Arduino"));
+    TEST_ASSERT_EQUAL_INT(DOCK_STORED_RESTORED, dock.board.settings);
+    TEST_ASSERT_EQUAL_INT(115200, board.uart.baud_rate);
+    TEST_ASSERT_TRUE(dock.settings.led.common_anode);
+    board.fifo = 100000;
+    loop();
+    TEST_ASSERT_TRUE(board.sent.find("stored settings damaged: second copy") !=
+                     std::string::npos);
 }
 
 static void test_a_first_start_says_nothing_of_corrupt_settings(void)
 {
     start_fresh_dock();
 
-    TEST_ASSERT_FALSE(dock.board.settings_corrupt);
-    TEST_ASSERT_EQUAL_INT(0, dock.faults & FAULT_SETTINGS);
+    TEST_ASSERT_EQUAL_INT(DOCK_STORED_WHOLE, dock.board.settings);
 }
 
 static void test_the_dock_knows_its_board(void)
@@ -96,6 +116,7 @@ static void test_the_dock_knows_its_board(void)
     TEST_ASSERT_EQUAL_UINT8(ESP_RST_BROWNOUT, dock.board.reset_reason);
     TEST_ASSERT_EQUAL_MEMORY("unknown\0", dock.board.git_hash, 8);
     TEST_ASSERT_EQUAL_UINT32(160 * 120 * 2, dock.board.capacity);
+    TEST_ASSERT_EQUAL_HEX64(UINT64_C(0x240AC4123456), dock.board.uid);
     TEST_ASSERT_EQUAL_INT(0,
                           reinterpret_cast<uintptr_t>(dock.board.buffer) % 2);
 }
@@ -114,7 +135,7 @@ static void test_the_watchdog_watches_the_colour_task_and_resets(void)
 
     TEST_ASSERT_TRUE(board.watchdog_watching);
     TEST_ASSERT_TRUE(board.watchdog_panics);
-    TEST_ASSERT_EQUAL_UINT32(20000, board.watchdog_ms);
+    TEST_ASSERT_EQUAL_UINT32(40000, board.watchdog_ms);
     TEST_ASSERT_EQUAL_INT(0, board.feeds);
 }
 
@@ -126,6 +147,7 @@ static void run_start_cases(void)
     RUN_TEST(test_the_leds_stay_dark_to_the_first_decision);
     RUN_TEST(test_the_port_has_the_stored_speed);
     RUN_TEST(test_corrupt_settings_start_the_default_dock_and_say_so);
+    RUN_TEST(test_memory_that_arduino_erases_is_restored_and_told);
     RUN_TEST(test_a_first_start_says_nothing_of_corrupt_settings);
     RUN_TEST(test_the_dock_knows_its_board);
     RUN_TEST(test_the_cameras_task_is_on_the_colours_core);

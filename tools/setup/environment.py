@@ -14,6 +14,7 @@ from stamps import Stamp
 HOST = ROOT / "host"
 BINDING = ROOT / "firmware" / "bindings"
 DOCKCORE = ROOT / "firmware" / "lib" / "dockcore"
+WHOLE_IMAGE = ROOT / "firmware" / "lib" / "wholeimage"
 OPENCV4 = BUILD / "opencv4"
 MAVPROXY = BUILD / "mavproxy"
 MAVSDK = BUILD / "mavsdk"
@@ -59,7 +60,7 @@ def install_host() -> None:
 
 def install_binding() -> None:
     """Compile dockcore into a Python extension, anew when any of its files changed."""
-    stamp = Stamp(VENV, "binding", [CONSTRAINTS, DOCKCORE, BINDING, *MAVLINK])
+    stamp = Stamp(VENV, "binding", [CONSTRAINTS, DOCKCORE, WHOLE_IMAGE, BINDING, *MAVLINK])
     if stamp.fresh():
         return
     with step("firmware binding"):

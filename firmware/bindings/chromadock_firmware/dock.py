@@ -24,6 +24,13 @@ REQUESTS = {
 }
 
 
+_STORED = {
+    lib.SETTINGS_READ: lib.DOCK_STORED_WHOLE,
+    lib.SETTINGS_MENDED: lib.DOCK_STORED_IN_PART,
+    lib.SETTINGS_REFUSED: lib.DOCK_STORED_LOST,
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Settings:
     """What differs from the firmware's default settings; None leaves the default."""
@@ -57,42 +64,67 @@ class Dock:
     def __init__(self, settings: Settings | None = None, blob: bytes | None = None) -> None:
         """Start it with ``settings``, or with those of a ``blob`` from flash.
 
-        A blob that is not valid leaves ``settings`` and sets ``settings_corrupt``.
+        A blob that is damaged leaves ``settings``; ``stored`` says what became of it.
         """
         self.c: Any = ffi.new("dock_t *")
         c = ffi.new("dock_settings_t *", (settings or Settings()).to_c())
-        self.settings_corrupt = blob is not None and not lib.settings_from_blob(c, blob, len(blob))
+        self.stored = lib.DOCK_STORED_WHOLE
+        if blob is not None:
+            self.stored = _STORED[lib.settings_from_blob(c, blob, len(blob))]
         self._buffer: Any = ffi.NULL
         lib.dock_init(self.c, c)
+        self._now_ms = 0
 
-    def frame(self, data: bytes | None, width: int, height: int, fmt: str, now_ms: int) -> None:
+    def frame(
+        self,
+        data: bytes | None,
+        width: int,
+        height: int,
+        fmt: str,
+        now_ms: int,
+        age_ms: int = 0,
+    ) -> None:
         """A camera frame (``fmt`` ``rgb565`` or ``rgb888``), or None: a camera fault.
 
+        The first of its light was gathered ``age_ms`` ago: 0 for a picture of one moment.
         A frame whose length does not match its size is counted and changes nothing.
         """
-        frame = ffi.NULL if data is None else c_frame(data, width, height, fmt)
+        frame = ffi.NULL if data is None else c_frame(data, width, height, fmt, age_ms)
         lib.dock_frame(self.c, frame, now_ms & 0xFFFFFFFF)
+        self._now_ms = now_ms
 
     def set_board(
-        self, git_hash: bytes = b"", reset_reason: int = 0, capacity: int = lib.DOCK_IMAGE_BYTES
+        self,
+        git_hash: bytes = b"",
+        reset_reason: int = 0,
+        capacity: int = lib.DOCK_IMAGE_BYTES,
+        uid: int = 0,
     ) -> None:
         """What the board knows of itself.
 
         ``git_hash`` has at most 8 letters; ``capacity`` is the room in bytes for a snapshot
-        or an injected frame.
+        or an injected frame; ``uid`` is the chip's number.
         """
         self._buffer = ffi.new("uint8_t[]", capacity) if capacity else ffi.NULL
         board = ffi.new("dock_board_t *")
         board.reset_reason = reset_reason
-        board.settings_corrupt = self.settings_corrupt
+        board.settings = self.stored
         board.git_hash = git_hash.ljust(8, b"\0")
         board.buffer = self._buffer
         board.capacity = capacity
+        board.uid = uid
         lib.dock_set_board(self.c, board)
 
-    def set_camera(self, exposure: int, gain: int, locked: bool) -> None:
-        """What the sensor is set to: ``exposure`` in lines, ``gain`` in its own units."""
-        lib.dock_set_camera(self.c, ffi.new("dock_camera_t *", (exposure, gain, locked)))
+    def set_camera(
+        self, exposure: int, gain: int, locked: bool, proven: bool = False, sensor: int = 0
+    ) -> None:
+        """What the sensor is set to: ``exposure`` in lines, ``gain`` in its own units.
+
+        ``proven`` says that its picture was seen to follow the lock; ``sensor`` is the product
+        number of its chip, 0 for none.
+        """
+        camera = (exposure, gain, locked, proven, sensor)
+        lib.dock_set_camera(self.c, ffi.new("dock_camera_t *", camera))
 
     def receive(self, data: bytes, now_ms: int) -> None:
         """Bytes from the host, in any pieces, with anything between the messages."""
@@ -112,25 +144,46 @@ class Dock:
         """Answer to ``save``: whether the settings are in flash now."""
         lib.dock_saved(self.c, written)
 
+    @property
+    def rest_ms(self) -> int:
+        """How long the camera may rest from one frame to the next; 0: not at all."""
+        return int(lib.dock_rest_ms(self.c))
+
     def settings_blob(self) -> bytes:
         """The settings as flash holds them."""
         blob = ffi.new("uint8_t[]", lib.SETTINGS_BLOB_BYTES)
         lib.settings_to_blob(ffi.addressof(self.c.settings), blob)
         return bytes(ffi.buffer(blob))
 
+    def led_duties(self, now_ms: int) -> tuple[int, int, int]:
+        """PWM duties R, G, B, 0..LED_FULL, with correction, limit and polarity.
+
+        The LEDs are driven so from ``now_ms`` on: now and then they are dark for a frame.
+        """
+        duty = ffi.new("uint16_t[3]")
+        lib.dock_led_duties(self.c, duty, now_ms & 0xFFFFFFFF)
+        return duty[0], duty[1], duty[2]
+
     @property
     def duties(self) -> tuple[int, int, int]:
-        """PWM duties R, G, B, 0..LED_FULL, with correction, limit and polarity."""
-        duty = ffi.new("uint16_t[3]")
-        lib.dock_led_duties(self.c, duty)
-        return duty[0], duty[1], duty[2]
+        """``led_duties`` at the time of the last frame."""
+        return self.led_duties(self._now_ms)
+
+    @property
+    def looks(self) -> bool:
+        """Whether the LEDs are dark so that a frame is exposed without their light."""
+        return bool(lib.look_is_on(ffi.addressof(self.c.look)))
+
+    def set_last_hue(self, hue: int) -> None:
+        """The hue 0..1535 shown before a reset, for a dock whose camera gives no frame."""
+        lib.dock_set_last_hue(self.c, hue)
 
     @property
     def marker_hue(self) -> int:
         """Hue 0..1535 that the LEDs show: the rolling mean."""
-        return int(self.c.marker_hue)
+        return int(lib.dock_hue(self.c))
 
     @property
     def frame_faults(self) -> int:
         """Frames refused for their length, size or format."""
-        return int(self.c.counters.frame_faults)
+        return int(self.c.decision.frame_faults)

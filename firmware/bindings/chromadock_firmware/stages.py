@@ -34,13 +34,13 @@ def decide(data: bytes, width: int, height: int, fmt: str, mapping: str = "terna
     frame = c_frame(data, width, height, fmt)
     if not lib.frame_is_valid(frame):
         raise ValueError(f"the core refuses {len(data)} bytes as {width}x{height} {fmt}")
-    image = ffi.new("working_image_t *")
-    lib.working_image_from_frame(image, frame)
+    image = ffi.new("whole_image_t *")
+    lib.whole_image_working(image, frame)
     working = _rgb(image)
-    lib.working_image_smooth(image)
+    lib.whole_image_smoothed(image, frame)
     smoothed = _rgb(image)
     c = ffi.new("background_t *")
-    lib.background_from_image(c, image)
+    lib.whole_image_background(c, image, 0)
     background: dict[str, Any] = {
         "bin_counts": list(c.bin_counts),
         "hue_x": c.hue_sum.x,
@@ -77,7 +77,7 @@ def hsv_from_rgb(
 
 
 def _rgb(image: Any) -> NDArray[np.uint8]:
-    """The packed pixels of a ``working_image_t`` as (60, 80, 3) uint8."""
+    """The packed pixels of a ``whole_image_t`` as (60, 80, 3) uint8."""
     words = np.frombuffer(ffi.buffer(image), dtype=np.uint32).reshape(_SHAPE)
     channels = (words >> lib.PIXEL_RED_SHIFT, words >> lib.PIXEL_GREEN_SHIFT, words)
     return np.stack([c & 0xFF for c in channels], axis=-1).astype(np.uint8)

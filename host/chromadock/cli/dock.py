@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from chromadock.cli.dock_flash import flash
-from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Log, Port, Timeout, connect
+from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Log, Port, System, Timeout, connect
 from chromadock.cli.dock_params import params
 from chromadock.cli.dock_pictures import inject, snapshot
 from chromadock.cli.dock_simulate import simulate
@@ -30,15 +30,23 @@ _ASK_AGAIN_S = 0.5
 
 
 @dock.command("info")
-def info(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD, log: Log = None) -> None:
+def info(
+    port: Port = None,
+    timeout: Timeout = TIMEOUT,
+    baud: Baud = BAUD,
+    system: System = None,
+    log: Log = None,
+) -> None:
     """Show the dock's version and what it sees, decides and shows now."""
     from rich.console import Console
 
     from chromadock.cli.dock_status import table
 
-    with connect(port, timeout, baud, log) as client:
+    with connect(port, timeout, baud, system, log) as client:
         status = client.status()
     print(f"port      {client.connection.url}")
+    chip = f", chip {client.version.uid:012x}" if client.version.uid else ""
+    print(f"name      {client.name}{chip}")
     print(f"firmware  {client.version.git_hash}")
     print(f"method    {client.version.method_digest} (the same as this program's)")
     print(f"reset     reason {status.reset_reason}")
@@ -50,6 +58,7 @@ def watch(
     port: Port = None,
     timeout: Timeout = TIMEOUT,
     baud: Baud = BAUD,
+    system: System = None,
     log: Log = None,
     seconds: Annotated[
         float | None, typer.Option(help="Stop after so long.", show_default="Ctrl-C")
@@ -62,7 +71,7 @@ def watch(
     from chromadock.cli.dock_status import table
 
     console = Console(highlight=False)
-    with connect(port, timeout, baud, log, tell=True) as client:
+    with connect(port, timeout, baud, system, log, tell=True) as client:
         title = f"dock at {client.connection.url}, firmware {client.version.git_hash}"
         end = None if seconds is None else time.monotonic() + seconds
         statuses = _statuses(client, timeout, end)
@@ -121,10 +130,11 @@ def led(
     port: Port = None,
     timeout: Timeout = TIMEOUT,
     baud: Baud = BAUD,
+    system: System = None,
 ) -> None:
     """Set what the LEDs show until the next start."""
     values = _colour(colour)
-    with connect(port, timeout, baud) as client:
+    with connect(port, timeout, baud, system) as client:
         if not values:
             client.led_auto()
         elif len(values) == 1:
@@ -136,9 +146,11 @@ def led(
 
 
 @dock.command("reboot")
-def reboot(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -> None:
+def reboot(
+    port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD, system: System = None
+) -> None:
     """Restart the dock and wait until it is back."""
-    with connect(port, timeout, baud) as client:
+    with connect(port, timeout, baud, system) as client:
         client.reboot()
     print("the dock has restarted")
 

@@ -27,6 +27,14 @@ Port = Annotated[
 ]
 Timeout = Annotated[float, typer.Option("--timeout", help="Seconds to wait for an answer.")]
 Baud = Annotated[int, typer.Option("--baud", help="Speed of the port: the dock's LINK_BAUD.")]
+System = Annotated[
+    int | None,
+    typer.Option(
+        "--system",
+        help="Which dock of several on one line: its SYSTEM_ID.",
+        show_default="the only one",
+    ),
+]
 Log = Annotated[
     Path | None,
     typer.Option("--log", help="Write all bytes of both directions, with times."),
@@ -37,7 +45,12 @@ BAUD = 921600
 
 
 def connect(
-    port: str | None, timeout: float, baud: int, log: Path | None = None, tell: bool = False
+    port: str | None,
+    timeout: float,
+    baud: int,
+    system: int | None = None,
+    log: Path | None = None,
+    tell: bool = False,
 ) -> DockClient:
     """The dock, checked; with ``tell`` its warnings go to stderr as they come.
 
@@ -53,7 +66,9 @@ def connect(
         raise ChromadockError(f"--timeout is {timeout:g}: give seconds, 0 .. {_MOST_TIMEOUT_S:g}")
     if baud <= 0:
         raise ChromadockError(f"--baud is {baud}: give the dock's LINK_BAUD, usually {BAUD}")
-    return open_dock(port, baud, timeout, log, _tell if tell else None)
+    if system is not None and not 0 < system < 255:
+        raise ChromadockError(f"--system is {system}: give the dock's SYSTEM_ID, 1 .. 254")
+    return open_dock(port, baud, timeout, log, _tell if tell else None, system)
 
 
 def _tell(severity: int, text: str) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Port, Timeout, connect
+from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Port, System, Timeout, connect
 from chromadock.text import plural
 
 params = typer.Typer(help="Read and set the dock's parameters.", no_args_is_help=False)
@@ -18,14 +18,16 @@ Name = Annotated[str, typer.Argument(metavar="NAME", help="As in `params list`."
 
 
 @params.command("list")
-def list_all(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -> None:
+def list_all(
+    port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD, system: System = None
+) -> None:
     """Show all parameters with units, ranges and defaults."""
     from rich.console import Console
     from rich.table import Table
 
     from chromadock.link.values import TABLE, show, show_range
 
-    with connect(port, timeout, baud) as dock:
+    with connect(port, timeout, baud, system) as dock:
         values = dock.parameters()
     table = Table(box=None, pad_edge=False)
     for heading in ("name", "value", "range", "default"):
@@ -46,12 +48,18 @@ def list_all(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -
 
 
 @params.command("get")
-def get(name: Name, port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -> None:
+def get(
+    name: Name,
+    port: Port = None,
+    timeout: Timeout = TIMEOUT,
+    baud: Baud = BAUD,
+    system: System = None,
+) -> None:
     """Show one parameter."""
     from chromadock.link.values import parameter, show, show_range
 
     row = parameter(name)
-    with connect(port, timeout, baud) as dock:
+    with connect(port, timeout, baud, system) as dock:
         value = dock.parameter(row.name)
     print(f"{row.name} = {show(row, value)}  ({show_range(row)})  {row.text}")
 
@@ -63,21 +71,24 @@ def set_one(
     port: Port = None,
     timeout: Timeout = TIMEOUT,
     baud: Baud = BAUD,
+    system: System = None,
 ) -> None:
     """Set one parameter; it takes effect at once."""
     from chromadock.link.values import parameter, parse, show
 
     row = parameter(name)
     wanted = parse(row, value)
-    with connect(port, timeout, baud) as dock:
+    with connect(port, timeout, baud, system) as dock:
         taken = dock.set_parameter(row.name, wanted)
     print(f"{row.name} = {show(row, taken)} {_UNSAVED}")
 
 
 @params.command("save")
-def save(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -> None:
+def save(
+    port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD, system: System = None
+) -> None:
     """Write the parameters to the dock's flash, so that they outlast a restart."""
-    with connect(port, timeout, baud) as dock:
+    with connect(port, timeout, baud, system) as dock:
         dock.save()
     print("saved in the dock's flash")
 
@@ -88,20 +99,23 @@ def load(
     port: Port = None,
     timeout: Timeout = TIMEOUT,
     baud: Baud = BAUD,
+    system: System = None,
 ) -> None:
     """Set every parameter in FILE; nothing is sent if anything in it is wrong."""
     from chromadock.link.values import read_file
 
     values = read_file(file)
-    with connect(port, timeout, baud) as dock:
+    with connect(port, timeout, baud, system) as dock:
         for name, value in values.items():
             dock.set_parameter(name, value)
     print(f"{plural(len(values), 'parameter')} set {_UNSAVED}")
 
 
 @params.command("reset")
-def reset(port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD) -> None:
-    """Set all parameters to their defaults."""
-    with connect(port, timeout, baud) as dock:
+def reset(
+    port: Port = None, timeout: Timeout = TIMEOUT, baud: Baud = BAUD, system: System = None
+) -> None:
+    """Set all parameters to their defaults; LED_LIMIT and LED_ANODE stay."""
+    with connect(port, timeout, baud, system) as dock:
         dock.reset()
-    print(f"all parameters at their defaults {_UNSAVED}")
+    print(f"all parameters but LED_LIMIT and LED_ANODE at their defaults {_UNSAVED}")

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Log, Port, Timeout, connect
+from chromadock.cli.dock_options import BAUD, TIMEOUT, Baud, Log, Port, System, Timeout, connect
 from chromadock.cli.exit_status import EXIT_SKIPPED
 from chromadock.errors import ChromadockError
 
@@ -18,6 +18,7 @@ def snapshot(
     port: Port = None,
     timeout: Timeout = TIMEOUT,
     baud: Baud = BAUD,
+    system: System = None,
     log: Log = None,
 ) -> None:
     """Fetch the dock camera's next frame."""
@@ -30,7 +31,7 @@ def snapshot(
         raise ChromadockError(f"{out}: the name must end in .png")
     if not out.parent.is_dir():
         raise ChromadockError(f"{out}: there is no folder {out.parent}: make it first")
-    with connect(port, timeout, baud, log) as dock:
+    with connect(port, timeout, baud, system, log) as dock:
         data, width, height = dock.snapshot()
     partial = partial_name(out)
     try:
@@ -50,6 +51,7 @@ def inject(
     port: Port = None,
     timeout: Timeout = TIMEOUT,
     baud: Baud = BAUD,
+    system: System = None,
     log: Log = None,
 ) -> None:
     """Let the dock decide on these pictures instead of its camera's, and show what it says."""
@@ -60,7 +62,7 @@ def inject(
     whole = True
     for source in frames:  # all of them, before anything is sent
         open_source(source).close()
-    with connect(port, timeout, baud, log) as dock:
+    with connect(port, timeout, baud, system, log) as dock:
         try:
             for source in frames:
                 with open_source(source, on_fault=_fault, on_note=_note) as opened:

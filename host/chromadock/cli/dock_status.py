@@ -17,6 +17,18 @@ _FAULTS = {
     dialect.DOCK_FAULT_SETTINGS: "stored settings were corrupt",
     dialect.DOCK_FAULT_STORAGE: "settings cannot be saved",
     dialect.DOCK_FAULT_UNLOCKED: "camera not locked yet",
+    dialect.DOCK_FAULT_OWN_LIGHT: "camera sees the dock's own lamps",
+}
+_SENSORS = {
+    0x26: "OV2640",
+    0x3660: "OV3660, unproven: no board with it has been tried",
+    0x5640: "OV5640, unproven: no board with it has been tried",
+    0x2145: "GC2145, unfit: its driver cannot lock it",
+}
+_LOCKS = {
+    dialect.DOCK_LOCK_NONE: "no",
+    dialect.DOCK_LOCK_READ_BACK: "by its registers alone",
+    dialect.DOCK_LOCK_PROVEN: "yes, the picture followed",
 }
 _LED_MODES = {
     dialect.DOCK_LED_AUTO: "auto",
@@ -30,6 +42,14 @@ def faults(status: Any) -> str:
     words = [text for bit, text in _FAULTS.items() if status.faults & bit]
     rest = status.faults & ~sum(_FAULTS)
     return ", ".join([*words, f"unknown {rest:#x}"] if rest else words) or "none"
+
+
+def sensor(status: Any) -> str:
+    """The camera's sensor by name, and what is known of it."""
+    if not status.sensor:
+        return "none, or a firmware that does not tell"
+    unknown = f"unknown {status.sensor:#x}, unproven: the dock is made for an OV2640"
+    return _SENSORS.get(status.sensor, unknown)
 
 
 def hue(steps: int) -> str:
@@ -68,6 +88,8 @@ def table(status: Any, title: str) -> Table:
     rows.add_row("duties R G B", " ".join(map(str, status.duty)))
     rows.add_row("LEDs", _LED_MODES.get(status.led_mode, str(status.led_mode)))
     rows.add_row("rate", f"{status.frame_rate_dhz / 10:.1f} fps, {status.frames} frames")
+    rows.add_row("sensor", sensor(status))
+    rows.add_row("locked", _LOCKS.get(status.lock, str(status.lock)))
     rows.add_row("exposure, gain", f"{status.exposure} lines, {status.gain}")
     wrong = faults(status)
     rows.add_row("faults", Text(wrong, style="" if wrong == "none" else "bold red"))

@@ -51,6 +51,34 @@ class RollingHue:
         return hue if mean is None else mean
 
 
+class SteadyHue:
+    """The hue to show or to look for: the rolling mean of decisions of one kind.
+
+    Water has a hue or it has none.  Decisions of the other kind are left out of the mean until
+    none of the kind shown has come for ``method.HOLD_MS``; then the window is emptied.
+    """
+
+    def __init__(self, window_ms: int = method.WINDOW_MS) -> None:
+        self._window_ms = window_ms
+        self._rolling = RollingHue(window_ms)
+        self._meaningful: bool | None = None
+        self._agreed_ms = self._shown = 0
+
+    def add(self, meaningful: bool, hue: int, now_ms: int) -> int:
+        """Take a decision at ``now_ms`` (32-bit clock, may wrap); return the hue shown.
+
+        ``meaningful`` is the background's, ``hue`` what ``marker_hue`` has for it.
+        """
+        if meaningful != self._meaningful:
+            held_ms = (now_ms - self._agreed_ms) & 0xFFFFFFFF
+            if self._meaningful is not None and held_ms < method.HOLD_MS:
+                return self._shown
+            self._rolling = RollingHue(self._window_ms)
+        self._meaningful, self._agreed_ms = meaningful, now_ms
+        self._shown = self._rolling.add(hue, now_ms)
+        return self._shown
+
+
 def observed_colour(
     background: tuple[int, int, int], marker: tuple[int, int, int]
 ) -> tuple[int, int, int]:

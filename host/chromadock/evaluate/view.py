@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from chromadock.choices import MAPPINGS
 from chromadock.colour.background import BackgroundColour
-from chromadock.colour.marker import RollingHue, marker_hue
+from chromadock.colour.marker import SteadyHue, marker_hue
 from chromadock.colour.vehicle import vehicle_background
 from chromadock.paper.mask import blurred_grey
 
@@ -22,7 +22,7 @@ class View:
     """A frame with what the filters share.
 
     ``frame_bgr`` and ``hsv`` (OpenCV's) are (H, W, 3) uint8, ``grey`` (H, W) uint8 blurred;
-    ``marker_hues`` has the rolling mean 0..1535 for each of ``MAPPINGS``.
+    ``marker_hues`` has the hue expected, 0..1535, for each of ``MAPPINGS``.
     """
 
     frame_bgr: NDArray[np.uint8]
@@ -36,17 +36,17 @@ class Vehicle:
     """The vehicle's colour decision frame after frame, for every mapping at once."""
 
     def __init__(self) -> None:
-        self._rolling = {mapping: RollingHue() for mapping in MAPPINGS}
+        self._steady = {mapping: SteadyHue() for mapping in MAPPINGS}
 
     def decide(
         self, frame_bgr: NDArray[np.uint8], time_s: float
     ) -> tuple[BackgroundColour, dict[str, int]]:
-        """Water's colour and rolling mean of the marker's hue, as ``Detector`` finds them."""
+        """Water's colour and the hue expected of the marker, as ``Detector`` finds them."""
         background = vehicle_background(frame_bgr)
         now_ms = round(time_s * 1000)
         hues = {
-            mapping: rolling.add(marker_hue(background, mapping), now_ms)
-            for mapping, rolling in self._rolling.items()
+            mapping: steady.add(background.meaningful, marker_hue(background, mapping), now_ms)
+            for mapping, steady in self._steady.items()
         }
         return background, hues
 

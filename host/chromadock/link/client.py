@@ -15,6 +15,7 @@ from chromadock.link.framing import Message
 from chromadock.link.messenger import AGAIN_S, PATIENCE_S, Clock, Messenger, OnText
 
 REBOOT_TIMEOUT_S = 10.0
+_OTHERS_S = 0.05
 _ONCE_DAMAGED = 3
 """Messages that may be damaged on the way before it looks like more than chance."""
 _STORE, _STORE_SAVE, _STORE_RESET = dialect.MAV_CMD_PREFLIGHT_STORAGE, 1, 2
@@ -24,10 +25,12 @@ _REBOOT, _REBOOT_NOW = dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1
 @dataclass(frozen=True)
 class Version:
     """``git_hash``: first letters of the firmware's commit; ``method_digest``: 16
-    hexadecimal digits, equal to ``method.DIGEST`` where both decide alike."""
+    hexadecimal digits, equal to ``method.DIGEST`` where both decide alike; ``uid``: the chip's
+    number, 0 where the dock does not tell it."""
 
     git_hash: str
     method_digest: str
+    uid: int
 
 
 class DockClient:
@@ -39,11 +42,13 @@ class DockClient:
         For the version, and for every other answer.
     on_text
         Gets severity and words of every status text.
+    system
+        The dock's MAVLink system, its SYSTEM_ID; None: of the only dock there.
 
     Raises
     ------
     ChromadockError
-        One line: nobody answers, other firmware, another method digest.
+        One line: nobody answers, several docks, other firmware, another method digest.
     """
 
     def __init__(
@@ -52,14 +57,20 @@ class DockClient:
         timeout_s: float = PATIENCE_S,
         clock: Clock = time.monotonic,
         on_text: OnText | None = None,
+        system: int | None = None,
     ) -> None:
         self.connection = connection
-        self.messenger = Messenger(connection, timeout_s, clock, on_text)
+        self.messenger = Messenger(connection, timeout_s, clock, on_text, system)
         try:
             self.version = _greet(self.messenger, timeout_s)
         except BaseException:
             connection.close()
             raise
+
+    @property
+    def name(self) -> str:
+        """What to call the dock: by its MAVLink system, ``dock 50``."""
+        return f"dock {self.messenger.system}"
 
     def status(self) -> Message:
         """A DOCK_STATUS of now."""
@@ -155,12 +166,18 @@ class DockClient:
             Where it refuses, or is not back within ten seconds.
         """
         before = self.status().time_boot_ms
+
+        def restarted(message: Message) -> bool:
+            # Its clock tells less if it was restarted just before.
+            if message.get_type() == "STATUSTEXT":
+                return " started, reset reason" in message.text
+            return bool(message.get_type() == "DOCK_STATUS" and message.time_boot_ms < before)
+
         command(self.messenger, _REBOOT, "reboot", _REBOOT_NOW)
         end = self.messenger.clock() + REBOOT_TIMEOUT_S
         while self.messenger.clock() < end:
             self.request_status()
-            status = self.next_status(AGAIN_S)
-            if status is not None and status.time_boot_ms < before:
+            if self.messenger.wait(restarted, AGAIN_S) is not None:
                 return
         raise self.messenger.silent("anything after its reboot")
 
@@ -181,22 +198,28 @@ class DockClient:
 
 
 def _greet(messenger: Messenger, timeout_s: float) -> Version:
-    """Ask for the version until it comes: sooner than a heartbeat, and it says more."""
+    """Ask for the version until it comes: sooner than a heartbeat, and it says more.
+
+    A heartbeat is asked for as well where it tells which system is a dock.
+    """
     url = messenger.connection.url
     end = messenger.clock() + timeout_s
-    request = command_long(
-        dialect.MAV_CMD_REQUEST_MESSAGE, dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION
-    )
+    ask, found = dialect.MAV_CMD_REQUEST_MESSAGE, messenger.system is not None
     answer = None
     while answer is None:
-        messenger.send(request)
+        if not found:
+            messenger.send(command_long(ask, dialect.MAVLINK_MSG_ID_HEARTBEAT))
+        messenger.send(command_long(ask, dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION))
         wait_s = min(AGAIN_S, max(end - messenger.clock(), 0.0))
         answer = messenger.wait(lambda m: bool(m.get_type() == "AUTOPILOT_VERSION"), wait_s)
         if answer is None and messenger.clock() >= end:
             raise _nobody(messenger, timeout_s)
+    if not found:
+        _choose(messenger, answer.get_srcSystem())
     version = Version(
         bytes(answer.flight_custom_version).rstrip(b"\0").decode("ascii", "replace"),
         bytes(reversed(answer.middleware_custom_version)).hex(),
+        answer.uid,
     )
     if version.method_digest != method.DIGEST:
         raise ChromadockError(
@@ -207,12 +230,31 @@ def _greet(messenger: Messenger, timeout_s: float) -> Version:
     return version
 
 
+def _choose(messenger: Messenger, system: int) -> None:
+    """Talk to this dock from now on, if there is no other."""
+    # All were asked at once: another one's answer is not far behind.
+    messenger.wait(lambda m: bool(m.get_srcSystem() != system), _OTHERS_S)
+    if len(messenger.docks) > 1:
+        systems = ", ".join(map(str, sorted(messenger.docks)))
+        raise ChromadockError(
+            f"{messenger.connection.url}: several docks, systems {systems}: "
+            "choose one with --system"
+        )
+    messenger.system = system
+
+
 def _nobody(messenger: Messenger, timeout_s: float) -> ChromadockError:
     url = messenger.connection.url
     if messenger.heartbeats:
         return ChromadockError(
             f"{url}: a dock's heartbeat, but no version: "
             "flash this version's firmware with `chromadock dock flash`"
+        )
+    if messenger.docks:
+        systems = ", ".join(map(str, sorted(messenger.docks)))
+        return ChromadockError(
+            f"{url}: a dock of system {systems} is there, but not {messenger.system}: "
+            "give another --system, or none"
         )
     if messenger.strangers:
         systems = ", ".join(map(str, sorted(messenger.strangers)))

@@ -7,6 +7,10 @@ from chromadock.errors import ChromadockError
 from chromadock.link.framing import Message
 from chromadock.link.messenger import DOCK_COMPONENT, DOCK_SYSTEM, Messenger
 
+SLOW_S = 10.0
+"""For a command that the dock said it is at: a board's flash takes four seconds."""
+_SLOW_AGAIN_S = 2.0
+
 _REFUSALS = {
     dialect.MAV_RESULT_TEMPORARILY_REJECTED: "is busy: try again in a moment",
     dialect.MAV_RESULT_DENIED: "refuses those values: correct them",
@@ -18,18 +22,18 @@ _REFUSALS = {
 def command(messenger: Messenger, number: int, what: str, *values: float) -> None:
     """Send a command with its parameters 1, 2, ... until it is acknowledged.
 
+    A dock that is at it is waited for, ``SLOW_S`` at most.
+
     Raises
     ------
     ChromadockError
         Where the dock does not answer or refuses; ``what`` names the command.
     """
-
-    def ours(message: Message) -> bool:
-        answers = _acknowledges(message, number)
-        return answers and bool(message.result != dialect.MAV_RESULT_IN_PROGRESS)
-
+    request = command_long(number, *values)
     heard = messenger.last_text
-    ack = messenger.ask(command_long(number, *values), ours, what)
+    ack = messenger.ask(request, lambda m: _acknowledges(m, number), what)
+    if ack.result == dialect.MAV_RESULT_IN_PROGRESS:
+        ack = _finished(messenger, request, what)
     if ack.result != dialect.MAV_RESULT_ACCEPTED:
         said = messenger.last_text if messenger.last_text != heard else ""
         refusal = _REFUSALS.get(ack.result, f"answers with result {ack.result}: see its messages")
@@ -37,6 +41,22 @@ def command(messenger: Messenger, number: int, what: str, *values: float) -> Non
             f"{messenger.connection.url}: {what}: the dock "
             + (f"says: {said}: correct the values" if said else refusal)
         )
+
+
+def _finished(messenger: Messenger, request: Message, what: str) -> Message:
+    """The last answer to a command that takes its time; asking again is asking for the same."""
+
+    def last(message: Message) -> bool:
+        final = _acknowledges(message, request.command)
+        return final and bool(message.result != dialect.MAV_RESULT_IN_PROGRESS)
+
+    end = messenger.clock() + SLOW_S
+    while (left_s := end - messenger.clock()) > 0:
+        ack = messenger.wait(last, min(_SLOW_AGAIN_S, left_s))
+        if ack is not None:
+            return ack
+        messenger.send(request)
+    raise messenger.silent(what)
 
 
 def ask_for_message(messenger: Messenger, number: int, name: str) -> Message:
@@ -60,7 +80,7 @@ def ask_for_message(messenger: Messenger, number: int, name: str) -> Message:
 
 
 def command_long(number: int, *values: float) -> Message:
-    """The message of a command; parameters left out are 0."""
+    """The message of a command, to a dock of the default system; parameters left out are 0."""
     parameters = [*map(float, values), *[0.0] * (7 - len(values))]
     return dialect.MAVLink_command_long_message(DOCK_SYSTEM, DOCK_COMPONENT, number, 0, *parameters)
 

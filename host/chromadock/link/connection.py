@@ -32,7 +32,9 @@ class Connection:
     Parameters
     ----------
     url
-        A device, or any URL that pyserial knows: ``socket://host:port``, ``spy://...``.
+        A device, or any URL that pyserial knows: ``socket://host:port``,
+        ``rfc2217://host:port``, ``spy://...``; ``tcp:host:port``, as MAVLink programs write
+        it, is ``socket://host:port``.
     baud
         Bits a second, where the port has such a thing.
     log
@@ -120,7 +122,13 @@ class Connection:
             end = time.monotonic() + timeout_s
             while not self._port.in_waiting and time.monotonic() < end:
                 time.sleep(_POLL_S)
-        return bytes(self._port.read(_CHUNK))
+        data = bytearray(self._port.read(_CHUNK))
+        while self._port.in_waiting:  # rfc2217:// gives but one byte at a time
+            more = self._port.read(_CHUNK)
+            if not more:
+                break
+            data += more
+        return bytes(data)
 
     def _gone(self, error: Exception) -> ChromadockError:
         return ChromadockError(
@@ -149,18 +157,22 @@ def _opened(url: str, baud: int) -> Any:
     opener.join(OPEN_TIMEOUT_S)
     if not result:
         raise ChromadockError(f"{url}: does not open: check the address and the cable")
+    if isinstance(result[0], ChromadockError):
+        raise result[0]
     if isinstance(result[0], Exception):
         raise _cannot_open(url, result[0]) from None
     return result[0]
 
 
 def _open(url: str, baud: int) -> Any:
+    address = _pyserial_url(url)
     port = serial.serial_for_url(
-        url,
+        address,
         do_not_open=True,
         baudrate=baud,
         timeout=0,
-        write_timeout=WRITE_TIMEOUT_S,
+        # The one kind of port that refuses to be opened with it.
+        write_timeout=None if address.startswith("rfc2217:") else WRITE_TIMEOUT_S,
         exclusive=True,
     )
     # Asserted RTS holds the ESP32-CAM-MB board in reset, DTR makes it wait for a download.
@@ -168,6 +180,27 @@ def _open(url: str, baud: int) -> Any:
     port.rts = False
     port.open()
     return port
+
+
+def _pyserial_url(url: str) -> str:
+    """``tcp:host:port`` as pyserial writes it.
+
+    Raises
+    ------
+    ChromadockError
+        For the addresses of MAVLink programs that no serial port can have.
+    """
+    kind, colon, rest = url.partition(":")
+    if "://" in url or not colon:
+        return url
+    if kind == "tcp":
+        return f"socket://{rest}"
+    if kind in ("udp", "udpin", "udpout", "udpbcast", "tcpin", "mcast"):
+        raise ChromadockError(
+            f"{url}: no serial port: give a device such as /dev/ttyUSB0, or tcp:HOST:PORT of a "
+            "program that listens there"
+        )
+    return url
 
 
 def _cannot_open(url: str, error: Exception) -> ChromadockError:

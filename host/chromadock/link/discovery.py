@@ -25,8 +25,10 @@ def open_dock(
     timeout_s: float = PATIENCE_S,
     log: Path | None = None,
     on_text: OnText | None = None,
+    system: int | None = None,
 ) -> DockClient:
-    """The dock at ``port``, or the only one that answers at any candidate.
+    """The dock at ``port``, or the only one that answers at any candidate; of that MAVLink
+    ``system``, or the only one there.
 
     Raises
     ------
@@ -34,11 +36,11 @@ def open_dock(
         One line: what is wrong with the port; no dock; several, by name.
     """
     if port is None:
-        port = _only_dock(baud, timeout_s)
-    return DockClient(Connection(port, baud, log), timeout_s, on_text=on_text)
+        port = _only_dock(baud, timeout_s, system)
+    return DockClient(Connection(port, baud, log), timeout_s, on_text=on_text, system=system)
 
 
-def _only_dock(baud: int, timeout_s: float) -> str:
+def _only_dock(baud: int, timeout_s: float, system: int | None) -> str:
     ports = candidates()
     if not ports:
         raise ChromadockError(
@@ -47,7 +49,7 @@ def _only_dock(baud: int, timeout_s: float) -> str:
     if len(ports) == 1:  # its own fault line says more than a list
         return ports[0]
     with ThreadPoolExecutor(len(ports)) as pool:
-        faults = list(pool.map(lambda p: _fault(p, baud, timeout_s), ports))
+        faults = list(pool.map(lambda p: _fault(p, baud, timeout_s, system), ports))
     docks = [p for p, fault in zip(ports, faults, strict=True) if fault is None]
     if len(docks) == 1:
         return docks[0]
@@ -57,10 +59,10 @@ def _only_dock(baud: int, timeout_s: float) -> str:
     raise ChromadockError(f"no dock answers ({reasons}): check power and cable, or give --port")
 
 
-def _fault(port: str, baud: int, timeout_s: float) -> str | None:
+def _fault(port: str, baud: int, timeout_s: float, system: int | None) -> str | None:
     """Why there is no dock at ``port``, None where there is one."""
     try:
-        DockClient(Connection(port, baud), timeout_s).close()
+        DockClient(Connection(port, baud), timeout_s, system=system).close()
     except ChromadockError as error:
         return str(error)
     return None

@@ -16,6 +16,7 @@ HOST_SYSTEM = 255
 HOST_COMPONENT = dialect.MAV_COMP_ID_MISSIONPLANNER
 DOCK_SYSTEM = dialect.DOCK_ID_SYSTEM
 DOCK_COMPONENT = dialect.DOCK_ID_COMPONENT
+EVERY_SYSTEM = 0
 
 PATIENCE_S = 2.0
 """For an answer; with the start of the program it makes 3 s."""
@@ -35,6 +36,9 @@ class Messenger:
     """One dock's messages over ``connection``; ``clock`` gives seconds, and ``patience_s`` is
     the longest wait for an answer, with all repetitions.
 
+    ``system`` is the dock's MAVLink system.  None: not known yet; what is sent goes to all of
+    them, and what comes from any dock is taken.
+
     Attributes
     ----------
     finder
@@ -45,6 +49,8 @@ class Messenger:
         Of the dock.
     received
         Messages of the dock, by id.
+    docks
+        Systems of docks that were heard, whichever one is talked to.
     strangers
         System ids of other MAVLink systems that were heard.
     last_text
@@ -57,8 +63,10 @@ class Messenger:
         patience_s: float = PATIENCE_S,
         clock: Clock = time.monotonic,
         on_text: OnText | None = None,
+        system: int | None = DOCK_SYSTEM,
     ) -> None:
         self.connection = connection
+        self.system = system
         self.patience_s = patience_s
         self.clock = clock
         self.on_text = on_text
@@ -66,6 +74,7 @@ class Messenger:
         self.bytes_received = 0
         self.heartbeats = 0
         self.received: Counter[int] = Counter()
+        self.docks: set[int] = set()
         self.strangers: set[int] = set()
         self.last_text = ""
         self._mav: Any = dialect.MAVLink(None, HOST_SYSTEM, HOST_COMPONENT)
@@ -74,7 +83,9 @@ class Messenger:
         self._last_byte = clock()
 
     def send(self, message: Message) -> None:
-        """Send a message of the dialect."""
+        """Send a message of the dialect; one to a dock of the default system goes to this one."""
+        if getattr(message, "target_system", None) == DOCK_SYSTEM:
+            message.target_system = EVERY_SYSTEM if self.system is None else self.system
         data = message.pack(self._mav)
         self._mav.seq = (self._mav.seq + 1) % 256
         self.connection.write(data)
@@ -154,9 +165,12 @@ class Messenger:
             self._sort(message)
 
     def _sort(self, message: Message) -> None:
-        sender = (message.get_srcSystem(), message.get_srcComponent())
-        if sender != (DOCK_SYSTEM, DOCK_COMPONENT):
-            self.strangers.add(sender[0])
+        system = message.get_srcSystem()
+        if message.get_srcComponent() == DOCK_COMPONENT and _is_docks(message):
+            self.docks.add(system)
+        ours = self.docks if self.system is None else {self.system}
+        if system not in ours or message.get_srcComponent() != DOCK_COMPONENT:
+            self.strangers.add(system)
             return
         self.received[message.get_msgId()] += 1
         kind = message.get_type()
@@ -167,3 +181,15 @@ class Messenger:
             if self.on_text is not None:
                 self.on_text(message.severity, self.last_text)
         self._queue.append(message)
+
+
+def _is_docks(message: Message) -> bool:
+    """Whether only a dock sends such a message: by the default system, by what its heartbeat
+    says it is, or because no one else has it."""
+    kind = message.get_type()
+    if kind == "HEARTBEAT" and message.get_srcSystem() != DOCK_SYSTEM:
+        return bool(
+            message.type == dialect.MAV_TYPE_GENERIC
+            and message.autopilot == dialect.MAV_AUTOPILOT_GENERIC
+        )
+    return bool(kind == "DOCK_STATUS" or message.get_srcSystem() == DOCK_SYSTEM)

@@ -24,6 +24,10 @@ from chromadock.sim.scene import Scene
 
 RGB = tuple[int, int, int]
 
+_LOOK_S = 0.001
+"""How long the dock's lamps are out for a frame without their light: a picture here is of one
+moment, so the vehicle's camera sees none of it."""
+
 METER_PERIOD_S = 0.1
 """Cameras look at the light this often, not at every frame of a fast one."""
 
@@ -96,7 +100,8 @@ class Simulation:
         """Both sides' state at ascending times, seconds: quick, but one after the other.
 
         At each of them the dock's camera takes a frame, the firmware core decides on it and
-        drives the LEDs; the vehicle's camera adapts.  Each call starts both sides anew.
+        drives the LEDs; the vehicle's camera adapts.  Where the core wants a frame without its
+        own light, it gets one between two steps.  Each call starts both sides anew.
 
         Raises
         ------
@@ -110,12 +115,14 @@ class Simulation:
         led_share = (0.0, 0.0, 0.0)
         for index, time_s in enumerate(times):
             dock_settings = dock_camera.settings(time_s, led_share)
-            seen = self._dock.picture(time_s, led_share, dock_settings)
-            height, width = seen.shape[:2]
-            dock.frame(to_rgb565(seen), width, height, "rgb565", round(1000 * time_s))
-            led_share = power_share(own_duties or dock.duties, led_full)
+            self._look(dock, time_s, led_share, dock_settings)
+            duties = dock.duties
+            if dock.looks:
+                self._look(dock, time_s + _LOOK_S, (0.0, 0.0, 0.0), dock_settings)
+                duties = dock.duties
+            led_share = power_share(own_duties or duties, led_full)
             settings = vehicle_camera.settings(time_s, led_share)
-            water = dock.c.background
+            water = dock.c.decision.background
             yield Step(
                 index=index,
                 time_s=time_s,
@@ -125,6 +132,18 @@ class Simulation:
                 dock_background=rgb_from_hsv(water.hue, water.saturation, water.value),
                 dock_settings=dock_settings,
             )
+
+    def _look(
+        self,
+        dock: Any,
+        time_s: float,
+        led_share: tuple[float, float, float],
+        camera: CameraSettings,
+    ) -> None:
+        """The dock decides on what its camera sees in the light of its LEDs."""
+        seen = self._dock.picture(time_s, led_share, camera)
+        height, width = seen.shape[:2]
+        dock.frame(to_rgb565(seen), width, height, "rgb565", round(1000 * time_s))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Renderers are quickly built and large to send.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,16 +13,26 @@ from chromadock.link.rgb565 import HEIGHT, WIDTH
 from chromadock.simulated.camera import Camera
 from chromadock.simulated.damage import Damage
 from chromadock.simulated.faults import Fault
+from chromadock.simulated.own_light import RGB, OwnLight
 from chromadock.simulated.storage import Storage
 from chromadock.simulated.texts import DRIVER, POWER_ON, RESET_REASONS, SOFTWARE, boot_text
 
 GIT_HASH = b"simulate"
+UID = 0x51_D0_C0_00_00_01
+"""In place of the chip's own."""
 BOOT_S = 0.1
 SETTLE_S = 0.5
 """From the start to locked exposure, gain and white balance; a board takes seconds."""
+SAVE_S = 0.5
+"""From the request to settings in flash: the board waits for its camera to pause, 0.24 s, or
+4 s where that gives no frame."""
 GRAB_TIMEOUT_S = 4.0
 """The camera driver's own."""
 SETTLED_EXPOSURE, SETTLED_GAIN = 300, 4
+SENSOR = 0x26
+"""An OV2640."""
+EXPOSED = 0.8
+"""Share of a frame's period from the first of its light to the last of its rows."""
 _TEXT_PERIOD_S = 0.5
 _NOISE_BYTES = 256
 _CHUNK = 1024
@@ -42,6 +53,10 @@ class SimulatedDock:
         What goes wrong, and when.
     seed
         Of noise and damaged bytes: the same ones every time.
+    own_light
+        What the camera sees of the lamps, share 0..1 of its full scale.
+    save_s
+        Seconds that saving the settings takes, without frames from the camera.
 
     Raises
     ------
@@ -57,9 +72,14 @@ class SimulatedDock:
         faults: Sequence[Fault] = (),
         seed: int = 0,
         now_s: float = 0.0,
+        own_light: float = 0.0,
+        save_s: float = SAVE_S,
     ) -> None:
         self._camera = camera
         self._period_s = 1 / fps
+        self._own_light = OwnLight(own_light)
+        self._duties = (0, 0, 0)
+        self._save_s = save_s
         self._storage = Storage(settings)
         self._random = random.Random(seed)
         share = max((f.share for f in faults), default=0.0)
@@ -73,17 +93,30 @@ class SimulatedDock:
         )
         self._text = b""
         self._text_due_s = now_s
+        self._core: Any = None
         self._boot(POWER_ON, now_s)
 
     @property
     def duties(self) -> tuple[int, int, int]:
         """PWM duties R, G, B as on the pins."""
-        r, g, b = self._core.duties
-        return int(r), int(g), int(b)
+        return self._duties
+
+    @property
+    def lamps(self) -> RGB:
+        """What the LEDs give, share of full power, R, G, B."""
+        from chromadock_firmware import lib
+
+        inverted = bool(self._core.c.settings.led.common_anode)
+        r, g, b = (d / lib.LED_FULL for d in self._duties)
+        return (1 - r, 1 - g, 1 - b) if inverted else (r, g, b)
 
     def next_due_s(self) -> float:
         """When ``step`` has something to do again, at the latest."""
-        return self._frame_due_s
+        return min(self._grab_due_s(), self._saved_at_s)
+
+    def _grab_due_s(self) -> float:
+        rested_s = self._frame_s + self._core.rest_ms / 1000 if self._locked else self._frame_s
+        return max(self._frame_due_s, rested_s)
 
     def step(self, now_s: float) -> None:
         """Everything that is due by the clock.
@@ -97,12 +130,15 @@ class SimulatedDock:
             self._begin(self._once.pop(0).kind, now_s)
         if self._reboot_wanted:
             self._boot(SOFTWARE, now_s)
-        if now_s >= self._frame_due_s:
+        if now_s >= self._saved_at_s:
+            self._save(now_s)
+        if now_s >= self._grab_due_s():
             self._grab(now_s)
         if not self._locked and now_s >= self._locked_at_s:
             self._lock()
         while (request := self._core.take_request()) is not None:
             self._obey(request, now_s)
+        self._drive(now_s)
 
     def receive(self, data: bytes, now_s: float) -> None:
         """Bytes from the host."""
@@ -124,11 +160,16 @@ class SimulatedDock:
     def _boot(self, reset: str, now_s: float) -> None:
         self._text += boot_text(reset)
         self._reboot_wanted = self._grab_fails = False
+        self._saved_at_s = math.inf
         self._boot_s = now_s
         self._ready_s = now_s + BOOT_S
-        self._frame_due_s = self._ready_s
+        self._frame_due_s = self._frame_s = self._ready_s
+        kept = self._core.marker_hue if reset == SOFTWARE else None
         self._core = _core(self._storage.load())
-        self._core.set_board(GIT_HASH, RESET_REASONS[reset])
+        if kept is not None:
+            self._core.set_last_hue(kept)
+        self._drive(now_s)
+        self._core.set_board(GIT_HASH, RESET_REASONS[reset], uid=UID)
         self._unlock(now_s)
 
     def _begin(self, kind: str, now_s: float) -> None:
@@ -144,33 +185,49 @@ class SimulatedDock:
 
     def _grab(self, now_s: float) -> None:
         lost = self._lasts("camera-lost", now_s)
-        data = None if lost or self._grab_fails else self._camera.frame()
+        exposed_s = EXPOSED * self._period_s
+        data = None
+        if not (lost or self._grab_fails):
+            data = self._own_light.exposed(self._camera.frame(), now_s - exposed_s, now_s)
         self._grab_fails = False
-        self._core.frame(data, WIDTH, HEIGHT, "rgb565", self._ms(now_s))
+        age_ms = round(1000 * exposed_s)
+        self._core.frame(data, WIDTH, HEIGHT, "rgb565", self._ms(now_s), age_ms)
+        self._drive(now_s)
         period = GRAB_TIMEOUT_S if lost else self._period_s
         # Late frames are left out, not caught up with.
         self._frame_due_s = max(self._frame_due_s + period, now_s)
+        self._frame_s = now_s
+
+    def _drive(self, now_s: float) -> None:
+        self._duties = self._core.led_duties(self._ms(now_s))
+        self._own_light.drive(self.lamps, now_s)
 
     def _obey(self, request: str, now_s: float) -> None:
         if request == "save":
-            blob = self._core.settings_blob()
-            self._core.saved(not self._lasts("storage", now_s) and self._storage.save(blob))
+            self._saved_at_s = now_s + self._save_s
+            self._frame_due_s = max(self._frame_due_s, self._saved_at_s)
         elif request == "camera":
             self._unlock(now_s)
         elif request == "reboot":
             self._reboot_wanted = True
 
+    def _save(self, now_s: float) -> None:
+        self._saved_at_s = math.inf
+        blob = self._core.settings_blob()
+        self._core.saved(not self._lasts("storage", now_s) and self._storage.save(blob))
+
     def _unlock(self, now_s: float) -> None:
         self._locked = False
         self._locked_at_s = now_s + SETTLE_S
-        self._core.set_camera(SETTLED_EXPOSURE, SETTLED_GAIN, False)
+        self._core.set_camera(SETTLED_EXPOSURE, SETTLED_GAIN, False, False, SENSOR)
 
     def _lock(self) -> None:
         wanted = self._core.c.settings.camera
         self._locked = True
         exposure = wanted.exposure if wanted.lock and wanted.exposure else SETTLED_EXPOSURE
         gain = wanted.gain if wanted.lock and wanted.gain >= 0 else SETTLED_GAIN
-        self._core.set_camera(exposure, gain, bool(wanted.lock))
+        lock = bool(wanted.lock)
+        self._core.set_camera(exposure, gain, lock, lock, SENSOR)
 
     def _lasts(self, kind: str, now_s: float) -> bool:
         return any(f.kind == kind and now_s - self._start_s >= f.at_s for f in self._lasting)

@@ -4,7 +4,7 @@
 #include "fixture.h"
 #include "suite.h"
 
-static working_image_t image, expected;
+static whole_image_t image, expected;
 
 /* A frame to be filled box by box; `expected` is filled along with it. */
 typedef struct {
@@ -43,7 +43,7 @@ static void boxes_set(const boxes_t *boxes, uint32_t at, colour_t sum)
 
 static void assert_boxes(const boxes_t *boxes)
 {
-    working_image_from_frame(&image, &boxes->canvas.frame);
+    whole_image_working(&image, &boxes->canvas.frame);
     assert_same_image(&expected, &image);
 }
 
@@ -99,7 +99,7 @@ static uint32_t mean_of_two(frame_format_t format, colour_t a, colour_t b)
     const canvas_t canvas = canvas_new(format, 160, 60);
     canvas_set(&canvas, 0, 0, a);
     canvas_set(&canvas, 1, 0, b);
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
     return image.pixel[0];
 }
 
@@ -109,7 +109,7 @@ static uint32_t pixel_of_bytes(uint8_t first, uint8_t second)
     const canvas_t canvas = canvas_new(FRAME_RGB565, 1, 1);
     canvas.bytes[0] = first;
     canvas.bytes[1] = second;
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
     canvas_free_all();
     return image.pixel[0];
 }
@@ -171,7 +171,7 @@ static void test_rgb888_bytes_are_red_green_blue(void)
     const canvas_t canvas = canvas_new(FRAME_RGB888, 1, 1);
     memcpy(canvas.bytes, (uint8_t[]){11, 22, 33}, 3);
 
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
 
     TEST_ASSERT_EQUAL_HEX32(pixel_pack(11, 22, 33), image.pixel[4799]);
 }
@@ -226,7 +226,7 @@ static void test_the_largest_white_frame_is_white(void)
     memset(canvas.bytes, 0xFF, canvas.frame.length);
     image_fill(&expected, pixel_pack(255, 255, 255));
 
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
 
     assert_same_image(&expected, &image);
 }

@@ -24,13 +24,15 @@ static void show(dock_t *dock, uint32_t frame_number)
     canvas_free_all();
 }
 
-static void assert_same_dock(const dock_t *expected, const dock_t *actual)
+static void assert_same_dock(dock_t *expected, dock_t *actual)
 {
     uint16_t a[3], b[3];
-    dock_led_duties(expected, a);
-    dock_led_duties(actual, b);
-    TEST_ASSERT_EQUAL_UINT16(expected->decided_hue, actual->decided_hue);
-    TEST_ASSERT_EQUAL_UINT16(expected->marker_hue, actual->marker_hue);
+    dock_led_duties(expected, a, 0);
+    dock_led_duties(actual, b, 0);
+    TEST_ASSERT_EQUAL_UINT16(expected->decision.decided_hue,
+                             actual->decision.decided_hue);
+    TEST_ASSERT_EQUAL_UINT16(expected->decision.steady.shown,
+                             actual->decision.steady.shown);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(a, b, 3);
 }
 
@@ -41,8 +43,7 @@ static void test_the_defaults_are_those_of_the_method(void)
     TEST_ASSERT_EQUAL_UINT8(METHOD_MAPPING_TERNARY, settings.mapping);
     TEST_ASSERT_EQUAL_UINT16(512, settings.fallback_hue);
     TEST_ASSERT_EQUAL_UINT16(2000, settings.window_ms);
-    TEST_ASSERT_TRUE(settings.led.common_anode);
-    TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+    TEST_ASSERT_FALSE(settings.led.common_anode);
 }
 
 static void test_the_ends_of_each_range_are_valid(void)
@@ -51,15 +52,14 @@ static void test_the_ends_of_each_range_are_valid(void)
     settings.mapping = METHOD_MAPPING_COMPLEMENT;
     settings.fallback_hue = 1535;
     settings.window_ms = 100;
-    TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+    TEST_ASSERT_EQUAL_INT(0, dock_mend_settings(&settings));
     settings.fallback_hue = 0;
     settings.window_ms = 2000;
-    TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+    TEST_ASSERT_EQUAL_INT(0, dock_mend_settings(&settings));
 }
 
 static void assert_gives_way_to_the_defaults(dock_settings_t settings)
 {
-    TEST_ASSERT_FALSE(dock_settings_are_valid(&settings));
     dock_init(&first, &settings);
     const dock_settings_t defaults = dock_default_settings();
     TEST_ASSERT_EQUAL_UINT8(defaults.mapping, first.settings.mapping);
@@ -124,16 +124,16 @@ static void test_a_fresh_start_forgets_everything(void)
 
     dock_init(&first, &settings);
 
-    dock_led_duties(&first, duty);
-    TEST_ASSERT_EQUAL_UINT16(4096, duty[0]);
-    TEST_ASSERT_EQUAL_UINT32(0, first.counters.frames);
-    TEST_ASSERT_EQUAL_UINT32(0, first.counters.camera_faults);
-    TEST_ASSERT_EQUAL_UINT8(0, first.rolling.count);
+    dock_led_duties(&first, duty, 0);
+    TEST_ASSERT_EQUAL_UINT16(0, duty[0]);
+    TEST_ASSERT_EQUAL_UINT32(0, first.decision.frames);
+    TEST_ASSERT_EQUAL_UINT32(0, first.camera_faults);
+    TEST_ASSERT_EQUAL_UINT8(0, first.decision.steady.rolling.count);
 }
 
 static void test_a_run_equals_its_stages(void)
 {
-    static working_image_t image;
+    static whole_image_t image;
     const dock_settings_t settings = dock_default_settings();
     background_t background;
     rolling_t rolling;
@@ -142,20 +142,20 @@ static void test_a_run_equals_its_stages(void)
     rolling_init(&rolling);
     for (uint32_t i = 0; i < 100; i++) {
         const canvas_t canvas = water(i);
-        working_image_from_frame(&image, &canvas.frame);
-        working_image_smooth(&image);
-        background_from_image(&background, &image);
+        whole_image_smoothed(&image, &canvas.frame);
+        whole_image_background(&background, &image, 0);
         const uint16_t decided = marker_hue(&background, 0, 512);
         const uint16_t mean = rolling_add(&rolling, decided, 50 * i, 2000);
         led_duties(expected, mean, &settings.led);
 
         dock_frame(&first, &canvas.frame, 50 * i);
 
-        dock_led_duties(&first, duty);
-        TEST_ASSERT_EQUAL_UINT16(decided, first.decided_hue);
-        TEST_ASSERT_EQUAL_UINT16(mean, first.marker_hue);
+        dock_led_duties(&first, duty, 0);
+        TEST_ASSERT_EQUAL_UINT16(decided, first.decision.decided_hue);
+        TEST_ASSERT_EQUAL_UINT16(mean, first.decision.steady.shown);
         TEST_ASSERT_EQUAL_UINT16_ARRAY(expected, duty, 3);
-        assert_same_image(&image, &first.image);
+        TEST_ASSERT_EQUAL_MEMORY(&background, &first.decision.background,
+                                 sizeof background);
         canvas_free_all();
     }
 }
@@ -179,7 +179,7 @@ static void test_two_docks_do_not_disturb_each_other(void)
     }
 
     assert_same_dock(&alone, &first);
-    TEST_ASSERT_EQUAL_UINT32(0, first.counters.camera_faults);
+    TEST_ASSERT_EQUAL_UINT32(0, first.camera_faults);
 }
 
 static void test_a_dock_may_move_in_memory(void)

@@ -8,7 +8,7 @@ static _Alignas(2) uint8_t bytes[2];
 static frame_t frame(frame_format_t format, uint16_t width, uint16_t height,
                      size_t length)
 {
-    return (frame_t){bytes, length, width, height, format};
+    return (frame_t){bytes, length, width, height, format, 0};
 }
 
 static void assert_valid(frame_t candidate)

@@ -8,7 +8,7 @@
 
 static const golden_frame_t *golden;
 static size_t sequence_at;
-static working_image_t image;
+static whole_image_t image;
 static background_t background;
 
 /* `at` points to the bytes R G B of a whole image in golden_pixels. */
@@ -72,18 +72,23 @@ static void assert_background_rgb(rgb_t expected)
 static void a_frame_gives_its_golden_values(void)
 {
     const frame_t frame = {golden_pixels + golden->frame_at,
-                           golden->frame_bytes, golden->width, golden->height,
-                           golden->format};
+                           golden->frame_bytes,
+                           golden->width,
+                           golden->height,
+                           golden->format,
+                           0};
     TEST_ASSERT_TRUE_MESSAGE(frame_is_valid(&frame), "frame is refused");
 
-    working_image_from_frame(&image, &frame);
+    whole_image_working(&image, &frame);
     assert_stage("working image", golden->working_at);
 
-    working_image_smooth(&image);
+    whole_image_smoothed(&image, &frame);
     assert_stage("smoothed image", golden->smoothed_at);
 
-    background_from_image(&background, &image);
-    assert_background(&golden->background);
+    for (uint8_t bin = 0; bin < METHOD_GREY_BINS; bin++) {
+        whole_image_background(&background, &image, bin);
+        assert_background(&golden->background);
+    }
     assert_background_rgb(golden->background_rgb);
 
     const uint16_t hue =
@@ -100,8 +105,11 @@ static void a_dock_given_the_frame_shows_its_golden_colour(void)
 {
     static dock_t dock;
     const frame_t frame = {golden_pixels + golden->frame_at,
-                           golden->frame_bytes, golden->width, golden->height,
-                           golden->format};
+                           golden->frame_bytes,
+                           golden->width,
+                           golden->height,
+                           golden->format,
+                           0};
     dock_settings_t settings = dock_default_settings();
     settings.mapping = golden->mapping;
     dock_init(&dock, &settings);
@@ -109,8 +117,8 @@ static void a_dock_given_the_frame_shows_its_golden_colour(void)
     dock_frame(&dock, &frame, 0);
 
     uint16_t duties[3];
-    dock_led_duties(&dock, duties);
-    TEST_ASSERT_EQUAL_UINT16(golden->marker_hue, dock.marker_hue);
+    dock_led_duties(&dock, duties, 0);
+    TEST_ASSERT_EQUAL_UINT16(golden->marker_hue, dock.decision.steady.shown);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(golden->duties, duties, 3);
 }
 
@@ -129,6 +137,22 @@ static void a_sequence_gives_its_golden_means(void)
         TEST_ASSERT_EQUAL_UINT16_MESSAGE(step->mean, mean, message);
         at++;
     } while (at < golden_rolling_count && !golden_rolling[at].first);
+}
+
+static void test_sequences_of_both_kinds_show_their_golden_hues(void)
+{
+    steady_t steady;
+    char message[64];
+    TEST_ASSERT_TRUE(golden_steady_count >= 100);
+    for (size_t i = 0; i < golden_steady_count; i++) {
+        const golden_steady_t *step = &golden_steady[i];
+        if (step->first)
+            steady_init(&steady);
+        snprintf(message, sizeof message, "decision %u", (unsigned)i);
+        steady_add(&steady, step->meaningful, step->hue, METHOD_WINDOW_MS,
+                   step->now_ms);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(step->shown, steady.shown, message);
+    }
 }
 
 static void test_led_settings_give_their_golden_duties(void)
@@ -179,6 +203,7 @@ static void run_tests(void)
         run_named(a_sequence_gives_its_golden_means, "rolling_from", number,
                   __LINE__);
     }
+    RUN_TEST(test_sequences_of_both_kinds_show_their_golden_hues);
     RUN_TEST(test_led_settings_give_their_golden_duties);
 }
 

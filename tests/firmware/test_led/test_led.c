@@ -95,7 +95,7 @@ static bool are_valid(led_settings_t led)
 {
     dock_settings_t settings = dock_default_settings();
     settings.led = led;
-    return dock_settings_are_valid(&settings);
+    return dock_mend_settings(&settings) == 0;
 }
 
 static void test_the_defaults_are_those_of_the_board(void)
@@ -103,7 +103,7 @@ static void test_the_defaults_are_those_of_the_board(void)
     const led_settings_t defaults = dock_default_settings().led;
 
     TEST_ASSERT_TRUE(are_valid(defaults));
-    assert_duties(0, 4096 - 899, 4096, ORANGE, defaults);
+    assert_duties(4096, 899, 0, ORANGE, defaults);
 }
 
 static void test_an_offset_beyond_255_is_invalid(void)

@@ -1,5 +1,6 @@
 /* From linear light to the duties of an LED: matrix, limit, rounding. */
 #include "led_fixture.h"
+#include "settings.h"
 #include "suite.h"
 
 static void test_matrix_rows_are_outputs_and_columns_inputs(void)
@@ -21,6 +22,35 @@ static void test_the_matrix_works_on_linear_light(void)
 
     assert_duties(0, 2048, 0, GREEN, settings);
     assert_duties(4096, 450, 0, ORANGE, settings); /* half of 899.1 */
+}
+
+static uint8_t limit_at(uint8_t limit, uint8_t dark, uint8_t value)
+{
+    led_settings_t settings = plain();
+    settings.limit = limit;
+    settings.dark_limit = dark;
+    return led_dimmed(&settings, value).limit;
+}
+
+static void test_the_limit_falls_with_the_water_s_value(void)
+{
+    TEST_ASSERT_EQUAL_UINT8(200, limit_at(200, 20, 255));
+    TEST_ASSERT_EQUAL_UINT8(20, limit_at(200, 20, 0));
+    TEST_ASSERT_EQUAL_UINT8(110, limit_at(200, 20, 128)); /* 110.35 */
+    TEST_ASSERT_EQUAL_UINT8(0, limit_at(255, 0, 0));
+    for (int value = 0; value <= 255; value++) {
+        TEST_ASSERT_EQUAL_UINT8(value, limit_at(255, 0, (uint8_t)value));
+        TEST_ASSERT_EQUAL_UINT8(200, limit_at(200, 200, (uint8_t)value));
+        TEST_ASSERT_EQUAL_UINT8(200, limit_at(200, 255, (uint8_t)value));
+    }
+}
+
+static void test_by_default_nothing_is_dimmed(void)
+{
+    const led_settings_t settings = dock_default_settings().led;
+    for (int value = 0; value <= 255; value++)
+        TEST_ASSERT_EQUAL_UINT8(255,
+                                led_dimmed(&settings, (uint8_t)value).limit);
 }
 
 static void test_less_than_no_light_is_dark(void)
@@ -119,6 +149,8 @@ static void run_tests(void)
 {
     RUN_TEST(test_matrix_rows_are_outputs_and_columns_inputs);
     RUN_TEST(test_the_matrix_works_on_linear_light);
+    RUN_TEST(test_the_limit_falls_with_the_water_s_value);
+    RUN_TEST(test_by_default_nothing_is_dimmed);
     RUN_TEST(test_less_than_no_light_is_dark);
     RUN_TEST(test_more_than_full_light_is_full);
     RUN_TEST(test_the_extremes_of_the_matrix_do_not_overflow);

@@ -54,13 +54,11 @@ static void test_messages_to_others_change_nothing_and_have_no_answer(void)
     }
 }
 
-static void test_messages_to_all_are_for_the_dock_too(void)
+static void test_messages_to_all_components_of_it_are_for_the_dock(void)
 {
-    static const uint8_t all[][2] = {{0, 0}, {50, 0}, {0, 1}, {50, 1}};
-    for (size_t i = 0; i < 4; i++) {
+    for (uint8_t component = 0; component < 2; component++) {
         link_start();
-        host.target_system = all[i][0];
-        host.target_component = all[i][1];
+        host.target_component = component;
         tell(wire_parameter_set("LED_LIMIT", 7));
         TEST_ASSERT_EQUAL_UINT8(7, dock.settings.led.limit);
         assert_value("LED_LIMIT", 7);
@@ -80,6 +78,31 @@ static void test_messages_that_seem_to_come_from_the_dock_are_ignored(void)
         tell_frame(&canvas.frame);
         assert_unmoved(&before);
     }
+}
+
+/* A tunnel, a file, a log: whatever a message carries is not for the dock. */
+static void test_a_command_carried_by_another_message_is_not_obeyed(void)
+{
+    mavlink_message_t messages[3];
+    mavlink_tunnel_t tunnel = {.payload_length = 100};
+    mavlink_file_transfer_protocol_t file = {.target_system = 1};
+    mavlink_log_data_t log = {.count = 90};
+    link_start();
+    const wire_t inner =
+        wire_command(MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1, 0, 0, 0);
+    memcpy(tunnel.payload, inner.bytes, inner.length);
+    memcpy(file.payload + 12, inner.bytes, inner.length);
+    memcpy(log.data + 9, inner.bytes, inner.length);
+    mavlink_msg_tunnel_encode(1, 1, &messages[0], &tunnel);
+    mavlink_msg_file_transfer_protocol_encode(1, 1, &messages[1], &file);
+    mavlink_msg_log_data_encode(1, 1, &messages[2], &log);
+    for (size_t i = 0; i < 3; i++) {
+        tell(wire_of(&messages[i]));
+        assert_silent();
+        TEST_ASSERT_EQUAL_INT(DOCK_REQUEST_NONE, dock_take_request(&dock));
+        TEST_ASSERT_EQUAL_UINT(0, dock.link.receiver.length);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, status_now().link_faults);
 }
 
 /* As where the host's own bytes come back on a wire that is joined. */
@@ -171,19 +194,37 @@ static void test_a_lost_camera_is_said_once_and_so_is_its_return(void)
     TEST_ASSERT_EQUAL_UINT16(0, status_now().faults);
 }
 
-static void test_corrupt_settings_are_told_until_they_are_saved(void)
+/* A dock whose board says this of the stored settings; what it heard. */
+static void start_with_settings(dock_stored_t stored)
 {
     link_start();
-    const dock_board_t board = {4, true, "abcdef01", NULL, 0};
+    const dock_board_t board = {4, stored, "abcdef01", NULL, 0, 0};
     const dock_settings_t settings = dock_default_settings();
     dock_init(&dock, &settings);
     dock_set_board(&dock, &board);
     dock.link.sequence = 3; /* go on from link_start's three */
     hear();
+}
+
+static void test_lost_settings_are_told_until_they_are_saved(void)
+{
+    const dock_stored_t lost[] = {DOCK_STORED_LOST, DOCK_STORED_IN_PART};
+    for (size_t i = 0; i < 2; i++) {
+        start_with_settings(lost[i]);
+        TEST_ASSERT_EQUAL_UINT(2, heard_count(MAVLINK_MSG_ID_STATUSTEXT));
+        TEST_ASSERT_TRUE(status_now().faults & DOCK_FAULT_SETTINGS);
+        dock_saved(&dock, true);
+        TEST_ASSERT_FALSE(status_now().faults & DOCK_FAULT_SETTINGS);
+    }
+}
+
+static void test_a_second_copy_in_use_is_told_and_is_no_fault(void)
+{
+    start_with_settings(DOCK_STORED_RESTORED);
     TEST_ASSERT_EQUAL_UINT(2, heard_count(MAVLINK_MSG_ID_STATUSTEXT));
-    TEST_ASSERT_TRUE(status_now().faults & DOCK_FAULT_SETTINGS);
-    dock_saved(&dock, true);
     TEST_ASSERT_FALSE(status_now().faults & DOCK_FAULT_SETTINGS);
+    start_with_settings(DOCK_STORED_WHOLE);
+    TEST_ASSERT_EQUAL_UINT(1, heard_count(MAVLINK_MSG_ID_STATUSTEXT));
 }
 
 /* A frame of each, the camera's at 30 a second as the board delivers them. */
@@ -201,8 +242,8 @@ static void inject_blue_then_camera_green(void)
 static void test_camera_frames_are_passed_over_while_a_host_injects(void)
 {
     inject_blue_then_camera_green();
-    TEST_ASSERT_EQUAL_UINT32(1, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT16(0, dock.marker_hue);
+    TEST_ASSERT_EQUAL_UINT32(1, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT16(0, dock.decision.steady.shown);
 }
 
 static void test_the_camera_is_back_three_seconds_after_the_last_packet(void)
@@ -210,8 +251,8 @@ static void test_the_camera_is_back_three_seconds_after_the_last_packet(void)
     inject_blue_then_camera_green();
     const canvas_t green = water(green_water);
     dock_frame(&dock, &green.frame, clock_ms + 3001);
-    TEST_ASSERT_EQUAL_UINT32(2, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT16(1024, dock.decided_hue);
+    TEST_ASSERT_EQUAL_UINT32(2, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.decided_hue);
 }
 
 static void test_the_camera_is_back_at_once_when_the_host_says_so(void)
@@ -220,7 +261,7 @@ static void test_the_camera_is_back_at_once_when_the_host_says_so(void)
     const canvas_t green = water(green_water);
     tell(wire_handshake(&(frame_t){.length = 0}));
     dock_frame(&dock, &green.frame, clock_ms + 3000);
-    TEST_ASSERT_EQUAL_UINT32(2, dock.counters.frames);
+    TEST_ASSERT_EQUAL_UINT32(2, dock.decision.frames);
 }
 
 static void test_half_an_injected_frame_is_dropped_with_the_injection(void)
@@ -234,21 +275,23 @@ static void test_half_an_injected_frame_is_dropped_with_the_injection(void)
     dock_frame(&dock, &green.frame, 3001);
     for (uint16_t i = 20; i < packets_in(&blue.frame); i++)
         tell(wire_packet(&blue.frame, i));
-    TEST_ASSERT_EQUAL_UINT32(1, dock.counters.frames);
-    TEST_ASSERT_EQUAL_UINT16(1024, dock.decided_hue);
+    TEST_ASSERT_EQUAL_UINT32(1, dock.decision.frames);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock.decision.decided_hue);
 }
 
 static void run_tests(void)
 {
     RUN_TEST(test_messages_to_others_change_nothing_and_have_no_answer);
-    RUN_TEST(test_messages_to_all_are_for_the_dock_too);
+    RUN_TEST(test_messages_to_all_components_of_it_are_for_the_dock);
     RUN_TEST(test_messages_that_seem_to_come_from_the_dock_are_ignored);
+    RUN_TEST(test_a_command_carried_by_another_message_is_not_obeyed);
     RUN_TEST(test_the_docks_own_words_coming_back_change_nothing);
     RUN_TEST(test_no_corrupt_bit_of_any_command_changes_anything);
     RUN_TEST(test_corrupt_messages_are_counted_in_the_status);
     RUN_TEST(test_a_message_is_answered_within_noise_and_driver_text);
     RUN_TEST(test_a_lost_camera_is_said_once_and_so_is_its_return);
-    RUN_TEST(test_corrupt_settings_are_told_until_they_are_saved);
+    RUN_TEST(test_lost_settings_are_told_until_they_are_saved);
+    RUN_TEST(test_a_second_copy_in_use_is_told_and_is_no_fault);
     RUN_TEST(test_camera_frames_are_passed_over_while_a_host_injects);
     RUN_TEST(test_the_camera_is_back_three_seconds_after_the_last_packet);
     RUN_TEST(test_the_camera_is_back_at_once_when_the_host_says_so);

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "fixture.h"
 #include "link_fixture.h"
 #include "suite.h"
 
@@ -53,12 +54,46 @@ static void test_two_list_requests_at_once_are_answered_once(void)
     assert_listed_from(0);
 }
 
-static void test_a_list_request_in_the_middle_starts_anew(void)
+/* Which of them came, a bit each. */
+static uint32_t heard_indices(void)
+{
+    uint32_t indices = 0;
+    mavlink_param_value_t value;
+    for (size_t i = 0; i < heard_count(MAVLINK_MSG_ID_PARAM_VALUE); i++) {
+        mavlink_msg_param_value_decode(heard(MAVLINK_MSG_ID_PARAM_VALUE, i),
+                                       &value);
+        indices |= UINT32_C(1) << value.param_index;
+    }
+    return indices;
+}
+
+/* Two ground stations on a slow line: the end of the list is reached though it
+ * is asked for anew before. */
+static void test_repeated_list_requests_starve_no_parameter(void)
+{
+    link_start();
+    for (int i = 0; i < 4; i++) {
+        tell(wire_parameter_list());
+        const size_t before = heard_count(MAVLINK_MSG_ID_PARAM_VALUE);
+        while (heard_count(MAVLINK_MSG_ID_PARAM_VALUE) < before + 10)
+            hear_once(40);
+    }
+    TEST_ASSERT_EQUAL_HEX32((UINT64_C(1) << PARAMETER_COUNT) - 1,
+                            heard_indices());
+}
+
+static void test_a_list_request_in_the_middle_sends_each_once_more(void)
 {
     link_start();
     tell(wire_parameter_list());
     while (heard_count(MAVLINK_MSG_ID_PARAM_VALUE) < 10)
         hear_once(40);
+    tell(wire_parameter_list());
+    hear();
+    TEST_ASSERT_EQUAL_UINT(PARAMETER_COUNT,
+                           heard_count(MAVLINK_MSG_ID_PARAM_VALUE));
+    TEST_ASSERT_EQUAL_HEX32((UINT64_C(1) << PARAMETER_COUNT) - 1,
+                            heard_indices());
     tell(wire_parameter_list());
     assert_listed_from(0);
 }
@@ -203,7 +238,7 @@ static void test_unknown_names_are_refused_by_name(void)
     assert_text(MAV_SEVERITY_WARNING, "led_limit: no such parameter");
     set("", 1);
     assert_text(MAV_SEVERITY_WARNING, ": no such parameter");
-    TEST_ASSERT_EQUAL_UINT32(3, status_now().link_faults);
+    TEST_ASSERT_EQUAL_UINT32(2, status_now().link_faults); /* set, not read */
 }
 
 static void test_a_name_of_sixteen_letters_is_read_no_further(void)
@@ -239,18 +274,64 @@ static void test_manual_mode_shows_the_hue_at_once(void)
     set("LED_ANODE", 0);
     set("LED_HUE", 120);
     set("LED_MODE", 1);
-    dock_led_duties(&dock, duty);
+    dock_led_duties(&dock, duty, 0);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(((uint16_t[]){0, 4096, 0}), duty, 3);
     set("LED_MODE", 0);
-    dock_led_duties(&dock, duty);
+    dock_led_duties(&dock, duty, 0);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(((uint16_t[]){0, 0, 0}), duty, 3);
+}
+
+static void show(colour_t water, uint32_t now_ms)
+{
+    const canvas_t canvas = canvas_of(FRAME_RGB888, 4, 3, water);
+    dock_frame(&dock, &canvas.frame, now_ms);
+    canvas_free_all();
+}
+
+static void test_another_mapping_shows_its_hue_at_once_and_nothing_between(void)
+{
+    link_start();
+    for (uint32_t i = 0; i < 30; i++)
+        show((colour_t){0, 0, 200}, 100 * i);
+    TEST_ASSERT_EQUAL_UINT16(0, dock_hue(&dock));
+
+    set("MAPPING", METHOD_MAPPING_COMPLEMENT);
+
+    TEST_ASSERT_EQUAL_UINT16(256, dock_hue(&dock));
+    for (uint32_t i = 30; i < 60; i++) {
+        show((colour_t){0, 0, 200}, 100 * i);
+        TEST_ASSERT_EQUAL_UINT16(256, dock_hue(&dock));
+    }
+}
+
+static void test_another_fallback_is_shown_at_once_and_nothing_between(void)
+{
+    link_start();
+    for (uint32_t i = 0; i < 30; i++)
+        show((colour_t){90, 90, 90}, 100 * i);
+    set("FALLBACK_HUE", 240);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock_hue(&dock));
+    show((colour_t){90, 90, 90}, 3000);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock_hue(&dock));
+}
+
+static void test_a_fallback_set_before_the_first_frame_is_the_one_shown(void)
+{
+    link_start();
+    set("FALLBACK_HUE", 240);
+    TEST_ASSERT_EQUAL_UINT16(1024, dock_hue(&dock));
 }
 
 static void run_tests(void)
 {
+    RUN_TEST(test_another_mapping_shows_its_hue_at_once_and_nothing_between);
+    RUN_TEST(test_another_fallback_is_shown_at_once_and_nothing_between);
+    RUN_TEST(test_a_fallback_set_before_the_first_frame_is_the_one_shown);
+
     RUN_TEST(test_the_list_is_each_parameter_once_in_order);
     RUN_TEST(test_two_list_requests_at_once_are_answered_once);
-    RUN_TEST(test_a_list_request_in_the_middle_starts_anew);
+    RUN_TEST(test_repeated_list_requests_starve_no_parameter);
+    RUN_TEST(test_a_list_request_in_the_middle_sends_each_once_more);
     RUN_TEST(test_each_is_read_by_name_and_by_index);
     RUN_TEST(test_an_index_has_precedence_over_the_name);
     RUN_TEST(test_an_index_beyond_the_last_has_no_value);

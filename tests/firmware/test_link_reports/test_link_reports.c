@@ -32,7 +32,7 @@ static void test_it_starts_with_a_heartbeat_a_text_and_a_status(void)
     TEST_ASSERT_EQUAL_UINT(1, heard_count(MAVLINK_MSG_ID_HEARTBEAT));
     TEST_ASSERT_EQUAL_UINT(1, heard_count(MAVLINK_MSG_ID_DOCK_STATUS));
     mavlink_msg_statustext_decode(heard(MAVLINK_MSG_ID_STATUSTEXT, 0), &text);
-    TEST_ASSERT_EQUAL_STRING("Chromadock abcdef01 started, reset reason 1",
+    TEST_ASSERT_EQUAL_STRING("Chromadock 50 abcdef01 started, reset reason 1",
                              text.text);
 }
 
@@ -113,17 +113,19 @@ static void test_the_status_tells_what_the_board_said(void)
     TEST_ASSERT_EQUAL_UINT32(123456, status.time_boot_ms);
     TEST_ASSERT_EQUAL_UINT16(300, status.exposure);
     TEST_ASSERT_EQUAL_UINT8(7, status.gain);
+    TEST_ASSERT_EQUAL_HEX16(0x26, status.sensor);
+    TEST_ASSERT_EQUAL_UINT8(DOCK_LOCK_PROVEN, status.lock);
     TEST_ASSERT_EQUAL_UINT8(1, status.reset_reason);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, status.background_hue);
     TEST_ASSERT_EQUAL_UINT16(0, status.frame_rate_dhz);
-    TEST_ASSERT_EQUAL_UINT16(4096, status.duty[0]); /* dark, common anode */
+    TEST_ASSERT_EQUAL_UINT16(0, status.duty[0]); /* dark */
     TEST_ASSERT_EQUAL_UINT16(0, status.faults);
 }
 
 static void test_an_unlocked_camera_is_a_fault_unless_it_is_asked_for(void)
 {
     link_start();
-    dock_set_camera(&dock, &(dock_camera_t){0, 0, false});
+    dock_set_camera(&dock, &(dock_camera_t){0, 0, false, false, 0});
     TEST_ASSERT_EQUAL_UINT16(DOCK_FAULT_UNLOCKED, status_now().faults);
     tell(wire_parameter_set("CAM_LOCK", 0));
     TEST_ASSERT_EQUAL_UINT16(0, status_now().faults);
@@ -136,6 +138,7 @@ static uint16_t rate_at(uint32_t period_ms)
     for (uint32_t i = 0; i < 60; i++)
         dock_frame(&dock, &canvas.frame, UINT32_MAX - 5000 + i * period_ms);
     canvas_free_all();
+    clock_ms = UINT32_MAX - 5000 + 59 * period_ms;
     return status_now().frame_rate_dhz;
 }
 
@@ -161,6 +164,7 @@ static void assert_version(uint16_t command, float p1)
     TEST_ASSERT_EQUAL_MEMORY("abcdef01", version.flight_custom_version, 8);
     TEST_ASSERT_EQUAL_MEMORY(&digest, version.middleware_custom_version, 8);
     TEST_ASSERT_EQUAL_HEX64(MAV_PROTOCOL_CAPABILITY_MAVLINK2 |
+                                MAV_PROTOCOL_CAPABILITY_COMMAND_INT |
                                 MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST,
                             version.capabilities);
     assert_silent();
@@ -229,8 +233,45 @@ static void test_a_buffer_too_small_for_anything_stays_empty(void)
     assert_all();
 }
 
+static void test_a_camera_that_died_has_no_rate_and_no_confidence(void)
+{
+    const canvas_t canvas =
+        canvas_of(FRAME_RGB888, 4, 3, (colour_t){0, 0, 200});
+    link_start();
+    for (clock_ms = 0; clock_ms < 5000; clock_ms += 100)
+        dock_frame(&dock, &canvas.frame, clock_ms);
+    clock_ms = 4900 + 14999;
+    mavlink_dock_status_t status = status_now();
+    TEST_ASSERT_EQUAL_UINT16(100, status.frame_rate_dhz);
+    TEST_ASSERT_EQUAL_UINT8(255, status.confidence);
+
+    clock_ms = 4900 + 15000;
+    status = status_now();
+    TEST_ASSERT_EQUAL_UINT16(0, status.frame_rate_dhz);
+    TEST_ASSERT_EQUAL_UINT8(0, status.confidence);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, status.background_hue);
+    TEST_ASSERT_EQUAL_UINT16(0, status.marker_hue); /* it is shown still */
+}
+
+static void test_own_light_is_a_fault_but_no_critical_one(void)
+{
+    link_start();
+    dock.look.clear = false;
+    TEST_ASSERT_EQUAL_UINT16(DOCK_FAULT_OWN_LIGHT, status_now().faults);
+    hear();
+    clock_ms += 1000;
+    hear();
+    mavlink_heartbeat_t heartbeat;
+    mavlink_msg_heartbeat_decode(heard(MAVLINK_MSG_ID_HEARTBEAT, 0),
+                                 &heartbeat);
+    TEST_ASSERT_EQUAL_UINT8(MAV_STATE_ACTIVE, heartbeat.system_status);
+}
+
 static void run_tests(void)
 {
+    RUN_TEST(test_a_camera_that_died_has_no_rate_and_no_confidence);
+    RUN_TEST(test_own_light_is_a_fault_but_no_critical_one);
+
     RUN_TEST(test_it_starts_with_a_heartbeat_a_text_and_a_status);
     RUN_TEST(test_the_heartbeat_is_what_ground_stations_expect);
     RUN_TEST(test_a_fault_shows_in_the_heartbeat);

@@ -17,6 +17,17 @@ static double shown(const parameter_t *p, int32_t stored)
     return (double)stored * p->numerator / (double)(UINT64_C(1) << p->shift);
 }
 
+static dock_settings_t away_from_the_defaults(void)
+{
+    dock_settings_t settings = dock_default_settings();
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        const parameter_t *p = &PARAMETERS[i];
+        parameter_set(p, &settings,
+                      p->initial == p->maximum ? p->minimum : p->maximum);
+    }
+    return settings;
+}
+
 /* In steps that reach both ends; every value of all but the baud rate. */
 #define FOR_EACH_VALUE(p, value)                              \
     for (int32_t value = (p)->minimum; value <= (p)->maximum; \
@@ -37,7 +48,8 @@ static void
 test_the_defaults_are_in_range_and_what_the_settings_start_with(void)
 {
     const dock_settings_t settings = dock_default_settings();
-    TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+    dock_settings_t copy = settings;
+    TEST_ASSERT_EQUAL_INT(0, dock_mend_settings(&copy));
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         const parameter_t *p = &PARAMETERS[i];
         TEST_ASSERT_TRUE(p->minimum <= p->initial && p->initial <= p->maximum);
@@ -54,7 +66,7 @@ static void test_some_defaults_are_where_the_code_looks_for_them(void)
     TEST_ASSERT_EQUAL_INT16(4096, settings.led.matrix[0]);
     TEST_ASSERT_EQUAL_INT16(0, settings.led.matrix[1]);
     TEST_ASSERT_EQUAL_INT16(4096, settings.led.matrix[8]);
-    TEST_ASSERT_TRUE(settings.led.common_anode);
+    TEST_ASSERT_FALSE(settings.led.common_anode);
     TEST_ASSERT_EQUAL_INT8(-1, settings.camera.gain);
     TEST_ASSERT_EQUAL_UINT32(921600, settings.link_baud);
 }
@@ -68,7 +80,7 @@ static void test_each_value_in_range_is_kept(void)
         {
             TEST_ASSERT_TRUE(parameter_set(p, &settings, value));
             TEST_ASSERT_EQUAL_INT32(value, parameter_get(p, &settings));
-            TEST_ASSERT_TRUE(dock_settings_are_valid(&settings));
+            TEST_ASSERT_EQUAL_INT(0, dock_mend_settings(&settings));
         }
     }
 }
@@ -104,7 +116,7 @@ static void test_a_value_out_of_range_changes_nothing(void)
     }
 }
 
-static void test_a_field_out_of_range_makes_the_settings_invalid(void)
+static void test_a_field_out_of_range_becomes_its_default_alone(void)
 {
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         const parameter_t *p = &PARAMETERS[i];
@@ -113,11 +125,18 @@ static void test_a_field_out_of_range_makes_the_settings_invalid(void)
                                              : (1 << 8 * p->size) - 1;
         if (top == p->maximum) /* the field cannot hold more */
             continue;
-        dock_settings_t settings = dock_default_settings();
+        dock_settings_t expected = away_from_the_defaults();
+        dock_settings_t settings = expected;
+        parameter_set(p, &expected, p->initial);
         uint8_t *at = (uint8_t *)&settings + p->offset;
         for (int k = 0; k < p->size; k++)
             at[k] = (uint8_t)((uint32_t)(p->maximum + 1) >> 8 * k);
-        TEST_ASSERT_FALSE_MESSAGE(dock_settings_are_valid(&settings), p->name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, dock_mend_settings(&settings),
+                                      p->name);
+        for (int j = 0; j < PARAMETER_COUNT; j++)
+            TEST_ASSERT_EQUAL_INT32_MESSAGE(
+                parameter_get(&PARAMETERS[j], &expected),
+                parameter_get(&PARAMETERS[j], &settings), PARAMETERS[j].name);
     }
 }
 
@@ -182,7 +201,7 @@ static void run_tests(void)
     RUN_TEST(test_each_value_in_range_is_kept);
     RUN_TEST(test_setting_one_leaves_all_others);
     RUN_TEST(test_a_value_out_of_range_changes_nothing);
-    RUN_TEST(test_a_field_out_of_range_makes_the_settings_invalid);
+    RUN_TEST(test_a_field_out_of_range_becomes_its_default_alone);
     RUN_TEST(test_each_value_travels_as_the_compilers_float);
     RUN_TEST(test_a_number_goes_to_the_nearest_value);
     RUN_TEST(test_what_is_no_number_is_refused);

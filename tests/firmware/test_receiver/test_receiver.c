@@ -87,6 +87,106 @@ static void test_unknown_messages_are_passed_over(void)
     TEST_ASSERT_EQUAL_UINT32(0, receiver.rejected);
 }
 
+/* A message of any id whose payload is another one, whole. */
+static wire_t around(wire_t inner, uint32_t id, uint8_t crc_extra)
+{
+    wire_t wire = {{MAVLINK_STX, (uint8_t)inner.length, 0, 0, 7, 1, 1,
+                    (uint8_t)id, (uint8_t)(id >> 8), (uint8_t)(id >> 16)},
+                   inner.length + 12};
+    memcpy(wire.bytes + 10, inner.bytes, inner.length);
+    uint16_t sum = crc_calculate(wire.bytes + 1, (uint16_t)(inner.length + 9));
+    crc_accumulate(crc_extra, &sum);
+    wire.bytes[inner.length + 10] = (uint8_t)sum;
+    wire.bytes[inner.length + 11] = (uint8_t)(sum >> 8);
+    return wire;
+}
+
+enum { UNKNOWN_ID = 11020 }; /* of another dialect */
+
+static void test_a_message_within_a_known_one_is_not_found(void)
+{
+    start();
+    put_wire(around(one_of(1), MAVLINK_MSG_ID_ENCAPSULATED_DATA,
+                    MAVLINK_MSG_ID_ENCAPSULATED_DATA_CRC));
+    TEST_ASSERT_EQUAL_UINT(1, found_count);
+    TEST_ASSERT_EQUAL_UINT32(MAVLINK_MSG_ID_ENCAPSULATED_DATA, found[0].id);
+}
+
+static void test_a_message_within_an_unknown_one_is_not_found(void)
+{
+    start();
+    for (int i = 0; i < 3; i++)
+        put_wire(around(one_of(1), UNKNOWN_ID, 99));
+    put_wire(one_of(0));
+    TEST_ASSERT_EQUAL_UINT(1, found_count);
+    assert_found(0, one_of(0));
+    put_wire(around(one_of(1), UNKNOWN_ID, 99));
+    wait(RECEIVER_PATIENCE_MS + 1);
+    TEST_ASSERT_EQUAL_UINT(1, found_count);
+    TEST_ASSERT_EQUAL_UINT(0, receiver.length);
+}
+
+static void test_the_longest_unknown_message_is_passed_over(void)
+{
+    wire_t inner = one_of(1);
+    inner.length = 255;
+    wire_t outer = around(inner, UNKNOWN_ID, 99);
+    outer.bytes[2] = MAVLINK_IFLAG_SIGNED;
+    outer.length += MAVLINK_SIGNATURE_BLOCK_LEN;
+    TEST_ASSERT_EQUAL_UINT(RECEIVER_CAPACITY - 1, outer.length);
+    start();
+    put_wire(outer);
+    put_wire(one_of(0));
+    TEST_ASSERT_EQUAL_UINT(1, found_count);
+    assert_found(0, one_of(0));
+}
+
+/* Whose length is wrong, so that good messages are within it.  One in a hundred
+ * of such false ends lies before a byte that looks like a start. */
+static void test_a_damaged_unknown_message_hides_no_other(void)
+{
+    int hidden = 0;
+    for (int flip = 1; flip < 256; flip++) {
+        wire_t damaged = around(one_of(2), UNKNOWN_ID, 99);
+        damaged.bytes[1] ^= (uint8_t)flip;
+        start();
+        put_wire(damaged);
+        put_wire(one_of(0));
+        put_wire(one_of(3));
+        wait(RECEIVER_PATIENCE_MS + 1);
+        hidden += found_count < 2;
+    }
+    TEST_ASSERT_LESS_OR_EQUAL_INT(4, hidden);
+}
+
+static void test_messages_of_version_1_are_read_too(void)
+{
+    const mavlink_param_set_t set = {.param_value = 7,
+                                     .target_system = DOCK_ID_SYSTEM,
+                                     .target_component = DOCK_ID_COMPONENT,
+                                     .param_id = "LED_LIMIT",
+                                     .param_type = MAV_PARAM_TYPE_REAL32};
+    mavlink_message_t message;
+    mavlink_get_channel_status(MAVLINK_COMM_0)->flags |=
+        MAVLINK_STATUS_FLAG_OUT_MAVLINK1;
+    mavlink_msg_param_set_encode_chan(255, 190, MAVLINK_COMM_0, &message, &set);
+    mavlink_get_channel_status(MAVLINK_COMM_0)->flags = 0;
+    const wire_t wire = wire_of(&message);
+    TEST_ASSERT_EQUAL_UINT8(MAVLINK_STX_MAVLINK1, wire.bytes[0]);
+    for (size_t cut = 0; cut <= wire.length; cut++) {
+        start();
+        put(wire.bytes, cut);
+        put(wire.bytes + cut, wire.length - cut);
+        put_wire(one_of(0));
+        TEST_ASSERT_EQUAL_UINT(2, found_count);
+        TEST_ASSERT_EQUAL_UINT32(MAVLINK_MSG_ID_PARAM_SET, found[0].id);
+        TEST_ASSERT_EQUAL_UINT8(255, found[0].system);
+        TEST_ASSERT_EQUAL_MEMORY(&set, found[0].payload,
+                                 MAVLINK_MSG_ID_PARAM_SET_LEN);
+        assert_found(1, one_of(0));
+    }
+}
+
 static void test_flags_that_nobody_knows_make_it_no_message(void)
 {
     for (int flag = 1; flag < 8; flag++) {
@@ -140,6 +240,11 @@ static void run_tests(void)
     RUN_TEST(test_a_duplicate_is_found_twice);
     RUN_TEST(test_signed_messages_are_read_like_others);
     RUN_TEST(test_unknown_messages_are_passed_over);
+    RUN_TEST(test_a_message_within_a_known_one_is_not_found);
+    RUN_TEST(test_a_message_within_an_unknown_one_is_not_found);
+    RUN_TEST(test_the_longest_unknown_message_is_passed_over);
+    RUN_TEST(test_a_damaged_unknown_message_hides_no_other);
+    RUN_TEST(test_messages_of_version_1_are_read_too);
     RUN_TEST(test_flags_that_nobody_knows_make_it_no_message);
     RUN_TEST(test_a_half_message_is_given_up_by_the_clock);
     RUN_TEST(test_the_clock_may_wrap_between_two_halves);

@@ -141,6 +141,104 @@ static void test_release_makes_everything_automatic(void)
     TEST_ASSERT_EQUAL_INT(0, board.sensor.preset);
 }
 
+static void test_other_sensors_of_this_kind_are_checked_by_their_registers(void)
+{
+    for (const int pid : {OV3660_PID, OV5640_PID}) {
+        board_reset();
+        board.sensor.pid = pid;
+        sensor_power_on();
+        TEST_ASSERT_EQUAL_INT(SENSOR_OK, lock(standard_order().settings));
+
+        board.sensor.changed_gains = 16;
+        TEST_ASSERT_EQUAL_INT(SENSOR_DIFFERS, lock(standard_order().settings));
+
+        board.sensor.broken = "get_reg";
+        TEST_ASSERT_EQUAL_INT(SENSOR_FAILED, lock(standard_order().settings));
+    }
+}
+
+static void test_a_sensor_without_these_commands_differs_and_does_not_fail(void)
+{
+    board_reset();
+    board.sensor.pid = GC2145_PID;
+    sensor_power_on();
+
+    TEST_ASSERT_EQUAL_INT(SENSOR_DIFFERS, lock(standard_order().settings));
+    TEST_ASSERT_EQUAL_INT(SENSOR_DIFFERS, sensor_release(&board.sensor.driver));
+}
+
+/* Frames every 80 ms of a scene whose brightness is told; the proof. */
+static lock_proof_t check(const std::function<uint32_t(bool half)> &brightness)
+{
+    LockCheck check;
+    check.begin(1000);
+    uint32_t at = 1000;
+    for (int frames = 0; !check.over(); frames++) {
+        TEST_ASSERT_LESS_THAN(100, frames);
+        check.frame(at += 80, brightness(check.half()));
+    }
+    TEST_ASSERT_FALSE(check.half());
+    return check.proof();
+}
+
+static void test_a_picture_that_follows_the_exposure_proves_the_lock(void)
+{
+    TEST_ASSERT_EQUAL_INT(LOCK_PROVEN,
+                          check([](bool half) { return half ? 1460 : 2000; }));
+    TEST_ASSERT_EQUAL_INT(LOCK_PROVEN,
+                          check([](bool half) { return half ? 200 : 400; }));
+}
+
+static void test_a_picture_that_stays_refutes_it(void)
+{
+    TEST_ASSERT_EQUAL_INT(LOCK_REFUTED, check([](bool) { return 2000; }));
+    TEST_ASSERT_EQUAL_INT(LOCK_REFUTED,
+                          check([](bool half) { return half ? 1900 : 2000; }));
+}
+
+static void test_dark_and_white_scenes_prove_nothing(void)
+{
+    TEST_ASSERT_EQUAL_INT(LOCK_UNPROVEN, check([](bool) { return 0; }));
+    TEST_ASSERT_EQUAL_INT(LOCK_UNPROVEN, check([](bool) { return 200; }));
+    TEST_ASSERT_EQUAL_INT(LOCK_UNPROVEN, check([](bool) { return 63 * 64; }));
+}
+
+static void test_a_scene_that_changes_meanwhile_proves_nothing(void)
+{
+    uint32_t brightness = 2000;
+    TEST_ASSERT_EQUAL_INT(LOCK_UNPROVEN,
+                          check([&](bool) { return brightness -= 30; }));
+    brightness = 1000;
+    TEST_ASSERT_EQUAL_INT(LOCK_UNPROVEN,
+                          check([&](bool) { return brightness += 30; }));
+}
+
+static void test_frames_that_come_slowly_prove_nothing_and_end_it(void)
+{
+    LockCheck check;
+    check.begin(UINT32_MAX - 1000); /* the clock wraps */
+    check.frame(2000, 2000);
+    TEST_ASSERT_TRUE(check.half());
+
+    check.frame(UINT32_MAX - 1000 + 4000, 1000);
+
+    TEST_ASSERT_TRUE(check.over());
+    TEST_ASSERT_FALSE(check.half());
+    TEST_ASSERT_EQUAL_INT(LOCK_UNPROVEN, check.proof());
+}
+
+static void test_the_brightness_is_the_mean_of_green(void)
+{
+    static uint8_t pixels[] = {0x07, 0xE0, 0xF8, 0x1F, 0x00, 0x20, 0x00, 0x00};
+    camera_fb_t frame = camera_fb_t();
+    frame.buf = pixels;
+    frame.len = sizeof pixels;
+    TEST_ASSERT_EQUAL_UINT32((63 + 0 + 1 + 0) * 64 / 4,
+                             frame_brightness(frame));
+    frame.len = 0;
+    TEST_ASSERT_EQUAL_UINT32(0, frame_brightness(frame));
+}
+
 static void test_new_settings_as_settled_settle_anew(void)
 {
     board_reset();
@@ -191,6 +289,14 @@ static void run_tests(void)
     RUN_TEST(test_each_command_that_is_not_taken_is_a_failure);
     RUN_TEST(test_a_loop_that_stays_on_is_no_lock);
     RUN_TEST(test_release_makes_everything_automatic);
+    RUN_TEST(test_other_sensors_of_this_kind_are_checked_by_their_registers);
+    RUN_TEST(test_a_sensor_without_these_commands_differs_and_does_not_fail);
+    RUN_TEST(test_a_picture_that_follows_the_exposure_proves_the_lock);
+    RUN_TEST(test_a_picture_that_stays_refutes_it);
+    RUN_TEST(test_dark_and_white_scenes_prove_nothing);
+    RUN_TEST(test_a_scene_that_changes_meanwhile_proves_nothing);
+    RUN_TEST(test_frames_that_come_slowly_prove_nothing_and_end_it);
+    RUN_TEST(test_the_brightness_is_the_mean_of_green);
     RUN_TEST(test_new_settings_as_settled_settle_anew);
     RUN_TEST(test_settings_that_name_every_value_lock_at_once);
 }

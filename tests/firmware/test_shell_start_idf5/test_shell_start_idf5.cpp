@@ -20,7 +20,7 @@ static void test_a_watchdog_that_does_not_run_is_started(void)
     start_dock();
 
     TEST_ASSERT_TRUE(board.watchdog_started);
-    TEST_ASSERT_EQUAL_UINT32(20000, board.watchdog_ms);
+    TEST_ASSERT_EQUAL_UINT32(40000, board.watchdog_ms);
 }
 
 static void run_tests(void)

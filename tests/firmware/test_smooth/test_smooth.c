@@ -2,9 +2,17 @@
 #include "fixture.h"
 #include "suite.h"
 
-static working_image_t image, expected;
+static whole_image_t image, expected;
 
-static uint32_t *pixel_at(working_image_t *of, uint32_t x, uint32_t y)
+/* `image` in place. */
+static void smooth(void)
+{
+    const canvas_t canvas = canvas_of_image(&image);
+    whole_image_smoothed(&image, &canvas.frame);
+    canvas_free_all();
+}
+
+static uint32_t *pixel_at(whole_image_t *of, uint32_t x, uint32_t y)
 {
     return &of->pixel[80 * y + x];
 }
@@ -23,7 +31,7 @@ static void assert_spread(uint32_t x, uint32_t y, const uint32_t weights[9])
                 pixel_pack(w, w, w);
     }
 
-    working_image_smooth(&image);
+    smooth();
 
     assert_same_image(&expected, &image);
 }
@@ -70,7 +78,7 @@ static void test_one_colour_stays_as_it_is(void)
         image_fill(&image, pixel);
         image_fill(&expected, pixel);
 
-        working_image_smooth(&image);
+        smooth();
 
         assert_same_image(&expected, &image);
     }
@@ -82,7 +90,7 @@ static void test_halves_go_up(void)
     *pixel_at(&image, 10, 10) =
         pixel_pack(2, 4, 8); /* in sixteenths: 8, 16, 32 */
 
-    working_image_smooth(&image);
+    smooth();
 
     TEST_ASSERT_EQUAL_HEX32(pixel_pack(1, 1, 2), *pixel_at(&image, 10, 10));
     TEST_ASSERT_EQUAL_HEX32(pixel_pack(0, 1, 1), *pixel_at(&image, 11, 10));
@@ -96,7 +104,7 @@ static void test_less_than_a_half_goes_down(void)
     *pixel_at(&image, 11, 11) =
         pixel_pack(3, 3, 3); /* 3 more there; 7 in all */
 
-    working_image_smooth(&image);
+    smooth();
 
     TEST_ASSERT_EQUAL_HEX32(0, *pixel_at(&image, 10, 10));
 }
@@ -108,7 +116,7 @@ static void test_channels_do_not_mix(void)
         image_fill(&image, 0);
         image_fill_part(&image, 2000, 500, pure[i]);
 
-        working_image_smooth(&image);
+        smooth();
 
         for (uint32_t at = 0; at < WORKING_PIXELS; at++)
             TEST_ASSERT_EQUAL_HEX32(0, image.pixel[at] & ~pure[i]);
@@ -117,7 +125,7 @@ static void test_channels_do_not_mix(void)
 }
 
 /* One channel of the blur at a place, the nine weights spelled out. */
-static uint32_t blurred(const working_image_t *of, int x, int y, uint32_t shift)
+static uint32_t blurred(const whole_image_t *of, int x, int y, uint32_t shift)
 {
     static const uint32_t weight[3] = {1, 2, 1};
     uint32_t sum = 0;
@@ -134,7 +142,7 @@ static uint32_t blurred(const working_image_t *of, int x, int y, uint32_t shift)
 
 static void test_noise_is_blurred_as_by_plain_sums(void)
 {
-    static working_image_t before;
+    static whole_image_t before;
     uint32_t state = 1;
     for (uint32_t i = 0; i < WORKING_PIXELS; i++)
         before.pixel[i] = pixel_pack(noise(&state) & 255, noise(&state) & 255,
@@ -145,7 +153,7 @@ static void test_noise_is_blurred_as_by_plain_sums(void)
                                        blurred(&before, i % 80, i / 80, 0));
     image = before;
 
-    working_image_smooth(&image);
+    smooth();
 
     assert_same_image(&expected, &image);
 }

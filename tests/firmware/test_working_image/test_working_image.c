@@ -4,7 +4,7 @@
 #include "fixture.h"
 #include "suite.h"
 
-static working_image_t image, expected;
+static whole_image_t image, expected;
 
 /* A cell by the documented rule: plain loops and one division. */
 static uint32_t cell(const canvas_t *canvas, uint32_t cx, uint32_t cy)
@@ -35,7 +35,7 @@ static void assert_cells(const canvas_t *canvas)
     for (uint32_t i = 0; i < WORKING_PIXELS; i++)
         expected.pixel[i] = cell(canvas, i % 80, i / 80);
 
-    working_image_from_frame(&image, &canvas->frame);
+    whole_image_working(&image, &canvas->frame);
 
     assert_same_image(&expected, &image);
 }
@@ -57,7 +57,7 @@ static void test_rgb888_of_the_working_size_is_copied(void)
             pixel_pack(canvas.bytes[3 * i], canvas.bytes[3 * i + 1],
                        canvas.bytes[3 * i + 2]);
 
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
 
     assert_same_image(&expected, &image);
 }
@@ -166,7 +166,7 @@ static void test_one_pixel_fills_the_image(void)
     const canvas_t canvas = canvas_of(FRAME_RGB888, 1, 1, (colour_t){9, 80, 7});
     image_fill(&expected, pixel_pack(9, 80, 7));
 
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
 
     assert_same_image(&expected, &image);
 }
@@ -176,7 +176,7 @@ static void test_two_columns_share_the_image(void)
     const canvas_t canvas = canvas_new(FRAME_RGB888, 2, 1);
     canvas_set(&canvas, 1, 0, (colour_t){1, 2, 3});
 
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
 
     TEST_ASSERT_EQUAL_HEX32(0, image.pixel[39]);
     TEST_ASSERT_EQUAL_HEX32(pixel_pack(1, 2, 3), image.pixel[40]);
@@ -190,7 +190,7 @@ static void test_rows_go_from_the_top(void)
     for (uint32_t x = 0; x < 160; x++)
         canvas_set(&canvas, x, 0, (colour_t){200, 0, 0});
 
-    working_image_from_frame(&image, &canvas.frame);
+    whole_image_working(&image, &canvas.frame);
 
     TEST_ASSERT_EQUAL_HEX32(pixel_pack(100, 0, 0), image.pixel[0]);
     TEST_ASSERT_EQUAL_HEX32(pixel_pack(100, 0, 0), image.pixel[79]);

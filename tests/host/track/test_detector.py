@@ -77,6 +77,18 @@ def test_a_dock_is_tracked_through_darkness_and_with_a_marker_out() -> None:
     assert any(np.allclose(p.t, pose(3.4)[1], atol=0.05) for p in poses)
 
 
+def test_the_track_goes_on_while_the_dock_looks_at_the_dark() -> None:
+    """Its lamps are out for less than 0.2 s: two frames at most."""
+    detector = Detector(CAMERA, DOCK)
+    run(detector, times(0.0, 1.0))
+    for k, t in enumerate((1.0, 1.1)):
+        dark = detector.process(water(np.random.default_rng(k))[..., ::-1].copy(), t)
+        assert dark.track is not None and dark.track.pose is not None
+        assert np.allclose(dark.track.pose.t, pose(t)[1], atol=0.1)
+    back = run(detector, times(1.2, 0.3))
+    assert all(d.found and d.track and d.track.state == "tracking" for d in back)
+
+
 def test_a_dock_with_a_marker_out_from_the_start_is_locked_in_clear_water(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

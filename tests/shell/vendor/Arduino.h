@@ -4,6 +4,20 @@
 
 #define ARDUINO_RUNNING_CORE 1
 
+#include <stdbool.h>
+#include <stdint.h>
+
+/* esp32-hal-cpu.h */
+extern "C" bool setCpuFrequencyMhz(uint32_t cpu_freq_mhz);
+
+/* Esp.h */
+class EspClass
+{
+  public:
+    uint64_t getEfuseMac();
+};
+extern EspClass ESP;
+
 void setup(void);
 void loop(void);
 

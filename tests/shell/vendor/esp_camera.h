@@ -1,6 +1,6 @@
-/* esp32-camera 2.0.4 and 2.1.5: driver/include/esp_camera.h. 2.0.0 and 2.0.1
- * call the pins pin_sscb_sda and pin_sscb_scl: no core that is supported has
- * them. */
+/* esp32-camera f0bb429 and 2ac69a6: driver/include/esp_camera.h. 2.0.0
+ * and 2.0.1 call the pins pin_sscb_sda and pin_sscb_scl: no core that is
+ * supported has them. */
 #ifndef ESP_CAMERA_H
 #define ESP_CAMERA_H
 

@@ -4,7 +4,8 @@
  * signatures of the vendor's own headers. They were compared by hand with
  *   ESP-IDF 4.4.7 (tag v4.4.7; Arduino core 2.0.17),
  *   ESP-IDF 5.5 (branch release/v5.5 at dd8d7946bb4; Arduino core 3.3),
- *   esp32-camera 2.0.4 (e689c3b) and 2.1.5+ (2ac69a6). */
+ *   esp32-camera f0bb429 (2.0.8; of Arduino core 2.0.17) and 2ac69a6 (2.1.5+).
+ */
 #ifndef ESP_IDF_VERSION_H
 #define ESP_IDF_VERSION_H
 

@@ -1,12 +1,17 @@
-/* esp32-camera 2.0.4 and 2.1.5: driver/include/sensor.h. The firmware's fields
- * and functions; the order of the others is not kept. */
+/* esp32-camera f0bb429 and 2ac69a6: driver/include/sensor.h. The firmware's
+ * fields and functions; the order of the others is not kept. */
 #ifndef SENSOR_H
 #define SENSOR_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-typedef enum { OV9650_PID = 0x96, OV2640_PID = 0x26 } camera_pid_t;
+typedef enum {
+    OV2640_PID = 0x26,
+    OV3660_PID = 0x3660,
+    OV5640_PID = 0x5640,
+    GC2145_PID = 0x2145,
+} camera_pid_t;
 typedef enum { PIXFORMAT_RGB565, PIXFORMAT_YUV422 } pixformat_t;
 typedef enum { FRAMESIZE_96X96, FRAMESIZE_QQVGA } framesize_t;
 
@@ -42,6 +47,7 @@ typedef struct _sensor {
     int (*set_aec_value)(sensor_t *sensor, int gain);
     int (*set_wb_mode)(sensor_t *sensor, int mode);
     int (*get_reg)(sensor_t *sensor, int reg, int mask);
+    int (*set_reg)(sensor_t *sensor, int reg, int mask, int value);
 } sensor_t;
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "hue.h"
-#include "working_image.h"
+#include "smooth.h"
 
 typedef struct {
     uint16_t bin_counts[METHOD_GREY_BINS]; /* pixels, dark to bright */
@@ -22,8 +22,10 @@ typedef struct {
     bool meaningful;    /* false: grey water, night or a mixture: no hue */
 } background_t;
 
-/* Of a smoothed image. */
-void background_from_image(background_t *background,
-                           const working_image_t *image);
+/* Of a smoothed image.  `likely_bin`, 0..METHOD_GREY_BINS - 1, changes nothing
+ * but the time it takes: the rows are read once where it is the fullest, as it
+ * mostly is if it was so in the frame before, and else twice. */
+void background_from_rows(background_t *background, row_source_t *rows,
+                          void *image, uint8_t likely_bin);
 
 #endif

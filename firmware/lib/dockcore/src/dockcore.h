@@ -11,8 +11,12 @@
 #include "marker.h"
 #include "method.h"
 #include "parameter_table.h"
+#include "pixel.h"
 #include "real32.h"
 #include "rolling.h"
+#include "settings_blob.h"
+#include "smooth.h"
+#include "steady.h"
 #include "working_image.h"
 
 #endif

@@ -18,6 +18,8 @@ typedef struct {
     uint16_t width;  /* pixels, 1..METHOD_MAX_FRAME_WIDTH */
     uint16_t height; /* pixels, 1..METHOD_MAX_FRAME_HEIGHT */
     frame_format_t format;
+    uint32_t
+        age_ms; /* since the first of its light was gathered; 0: just now */
 } frame_t;
 
 /* True where the frame can be read: known format, size in range, length equal

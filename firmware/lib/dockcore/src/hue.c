@@ -5,6 +5,12 @@ static uint32_t magnitude(int32_t value)
     return value < 0 ? 0u - (uint32_t)value : (uint32_t)value;
 }
 
+uint32_t hue_distance(uint32_t a, uint32_t b)
+{
+    const uint32_t apart = a < b ? b - a : a - b;
+    return apart <= METHOD_HUE_RANGE / 2 ? apart : METHOD_HUE_RANGE - apart;
+}
+
 bool hue_of_vector(hue_vector_t vector, uint16_t *hue)
 {
     const uint32_t x = magnitude(vector.x), y = magnitude(vector.y);

@@ -22,6 +22,9 @@ static inline int32_t hue_sin(uint32_t hue)
     return METHOD_SINE[hue];
 }
 
+/* From one hue to the other on the shorter way, 0..METHOD_HUE_RANGE / 2. */
+uint32_t hue_distance(uint32_t a, uint32_t b);
+
 /* The hue of a vector into *hue.  False, *hue untouched, for the zero vector:
  * it has none. */
 bool hue_of_vector(hue_vector_t vector, uint16_t *hue);

@@ -24,6 +24,17 @@ static uint16_t duty_of(uint32_t light, const led_settings_t *settings)
     return (uint16_t)(settings->common_anode ? LED_FULL - duty : duty);
 }
 
+led_settings_t led_dimmed(const led_settings_t *settings, uint8_t value)
+{
+    led_settings_t dimmed = *settings;
+    if (settings->dark_limit < settings->limit) {
+        const uint32_t range = (uint32_t)settings->limit - settings->dark_limit;
+        dimmed.limit =
+            (uint8_t)(settings->dark_limit + (range * value + 127) / 255);
+    }
+    return dimmed;
+}
+
 void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings)
 {
     const rgb_t pure = rgb_from_hsv(hue, 255, 255);

@@ -16,8 +16,15 @@ typedef struct {
         matrix[9]; /* rows R G B, on linear light, METHOD_MATRIX_UNIT = 1.0 */
     uint8_t gamma; /* index of the decoding exponent, < METHOD_GAMMA_COUNT */
     uint8_t limit; /* brightness, 255: all */
-    bool common_anode; /* the pin pulls the LED's cathode low: duty inverted */
+    bool common_anode;  /* the pin pulls the LED's cathode low: duty inverted */
+    uint8_t dark_limit; /* `limit` where the water is black; see led_dimmed */
 } led_settings_t;
+
+/* The same settings with the limit for water of this HSV value, 0..255: from
+ * dark_limit at 0 to limit at 255, or limit where dark_limit is no less.  The
+ * value is gamma-coded, so that half the value is a fifth of the light: the
+ * LEDs are dimmed later than the water is. */
+led_settings_t led_dimmed(const led_settings_t *settings, uint8_t value);
 
 /* Duties 0..LED_FULL of a pure colour: offset, gamma decoding, 3 x 3 matrix,
  * limit, polarity. */

@@ -2,44 +2,44 @@
 
 #include "link_parts.h"
 
-typedef void handler_t(dock_t *dock, const received_t *message,
-                       uint32_t now_ms);
-
 /* Every message that the dock reads. */
 static const struct {
     uint32_t id;
-    uint8_t crc_extra;
-    handler_t *handler;
+    link_handler_t *handler;
 } handlers[] = {
-#define HANDLE(NAME, handler) \
-    {MAVLINK_MSG_ID_##NAME, MAVLINK_MSG_ID_##NAME##_CRC, handler}
-    HANDLE(PARAM_REQUEST_LIST, link_on_parameter_list),
-    HANDLE(PARAM_REQUEST_READ, link_on_parameter_read),
-    HANDLE(PARAM_SET, link_on_parameter_set),
-    HANDLE(COMMAND_LONG, link_on_command),
-    HANDLE(DATA_TRANSMISSION_HANDSHAKE, link_on_handshake),
-    HANDLE(ENCAPSULATED_DATA, link_on_packet),
-#undef HANDLE
+    {MAVLINK_MSG_ID_PARAM_REQUEST_LIST, link_on_parameter_list},
+    {MAVLINK_MSG_ID_PARAM_REQUEST_READ, link_on_parameter_read},
+    {MAVLINK_MSG_ID_PARAM_SET, link_on_parameter_set},
+    {MAVLINK_MSG_ID_PARAM_EXT_REQUEST_LIST, link_on_typed_list},
+    {MAVLINK_MSG_ID_PARAM_EXT_REQUEST_READ, link_on_typed_read},
+    {MAVLINK_MSG_ID_PARAM_EXT_SET, link_on_typed_set},
+    {MAVLINK_MSG_ID_COMMAND_LONG, link_on_command_long},
+    {MAVLINK_MSG_ID_COMMAND_INT, link_on_command_int},
+    {MAVLINK_MSG_ID_DATA_TRANSMISSION_HANDSHAKE, link_on_handshake},
+    {MAVLINK_MSG_ID_ENCAPSULATED_DATA, link_on_packet},
 };
 
-#define HANDLERS (sizeof handlers / sizeof handlers[0])
+/* Who sends first.  Where a message does not fit, those below it wait. */
+static link_sender_t *const senders[] = {
+    link_send_acks,       /* a host waits for its answer */
+    link_send_texts,      /* and for the reason of a refusal */
+    link_send_reports,    /* small, and due by the clock */
+    link_send_parameters, /* many, but soon over */
+    link_send_typed,      /* the same for the other protocol */
+    link_send_echo,       /* before the image that it would wait for */
+    link_send_snapshot,   /* takes as long as the line needs for 39 KB */
+};
 
-static int crc_extra(uint32_t id)
-{
-    for (size_t i = 0; i < HANDLERS; i++)
-        if (handlers[i].id == id)
-            return handlers[i].crc_extra;
-    return -1;
-}
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static void handle(dock_t *dock, const received_t *message, uint32_t now_ms)
 {
-    for (size_t i = 0; i < HANDLERS; i++)
+    for (size_t i = 0; i < COUNT(handlers); i++)
         if (handlers[i].id == message->id)
             handlers[i].handler(dock, message, now_ms);
 }
 
-void dock_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
+void link_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
 {
     receiver_t *receiver = &dock->link.receiver;
     do {
@@ -48,24 +48,23 @@ void dock_receive(dock_t *dock, const uint8_t *bytes, size_t n, uint32_t now_ms)
         if (n > 0)
             bytes += taken;
         received_t message;
-        while (receiver_next(receiver, crc_extra, &message)) {
+        while (receiver_next(receiver, message_crc_extra, &message)) {
             /* Only a ground station or a vehicle talks to a dock. */
-            if (message.system != DOCK_ID_SYSTEM)
+            if (message.system != dock->link.system)
                 handle(dock, &message, now_ms);
             receiver_done(receiver);
         }
     } while (n > 0);
 }
 
-size_t dock_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
+size_t link_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
                      uint32_t now_ms)
 {
-    sender_t sender = {bytes, 0, capacity, &dock->link.sequence};
-    dock_receive(dock, NULL, 0, now_ms);
-    /* Answers first, bulk last: each stops at what does not fit any more. */
-    if (link_send_acks(dock, &sender) && link_send_texts(dock, &sender) &&
-        link_send_reports(dock, &sender, now_ms) &&
-        link_send_parameters(dock, &sender))
-        link_send_snapshot(dock, &sender);
+    sender_t sender = {bytes, 0, capacity, &dock->link.sequence,
+                       dock->link.system};
+    link_expire_snapshot(&dock->link, now_ms);
+    for (size_t i = 0; i < COUNT(senders); i++)
+        if (!senders[i](dock, &sender, now_ms))
+            break;
     return sender.length;
 }

@@ -1,178 +1,111 @@
 #include <string.h>
 
-#include "link_parts.h"
-#include "parameter_table.h"
-#include "real32.h"
+#include "link_order.h"
 
-#define SIGN (UINT32_C(1) << 31) /* alone: minus zero */
-
-/* An argument that is a whole number, 0 or more; -1 for any other. */
-static int64_t whole(const float *argument)
+static uint8_t store(dock_t *dock, const order_t *order)
 {
-    uint32_t bits;
-    int64_t n;
-    memcpy(&bits, argument, sizeof bits);
-    return real32_to_fixed(bits, 0, &n) && n >= 0 &&
-                   real32_from_fixed(n, 0) == (bits == SIGN ? 0 : bits)
-               ? n
-               : -1;
-}
-
-/* A hue in degrees, 0..360, as hue steps; -1 for anything else. */
-static int32_t hue_of_degrees(const float *argument)
-{
-    uint32_t bits;
-    int32_t hue;
-    memcpy(&bits, argument, sizeof bits);
-    if (!parameter_from_real32(&PARAMETERS[PARAMETER_LED_HUE], bits, &hue) ||
-        hue < 0 || hue > METHOD_HUE_RANGE)
-        return -1;
-    return hue % METHOD_HUE_RANGE;
-}
-
-static uint8_t set_leds(dock_t *dock, const mavlink_command_long_t *command)
-{
-    const int64_t rgb[3] = {whole(&command->param2), whole(&command->param3),
-                            whole(&command->param4)};
-    const int32_t hue = hue_of_degrees(&command->param2);
-    switch (whole(&command->param1)) {
-    case DOCK_LED_AUTO:
-        break;
-    case DOCK_LED_HUE:
-        if (hue < 0)
-            return MAV_RESULT_DENIED;
-        dock->led_hue = (uint16_t)hue;
-        break;
-    case DOCK_LED_RAW:
-        for (int i = 0; i < 3; i++)
-            if (rgb[i] < 0 || rgb[i] > 255)
-                return MAV_RESULT_DENIED;
-        for (int i = 0; i < 3; i++)
-            dock->led_raw[i] = (uint8_t)rgb[i];
-        break;
-    default:
-        return MAV_RESULT_DENIED;
-    }
-    dock->led_mode = (uint8_t)whole(&command->param1);
-    return MAV_RESULT_ACCEPTED;
-}
-
-static uint8_t store(dock_t *dock, const mavlink_command_long_t *command,
-                     const link_ack_t *ack)
-{
-    const dock_settings_t before = dock->settings;
-    switch (whole(&command->param1)) {
+    const link_ack_t later = {order->command, MAV_RESULT_FAILED, order->system,
+                              order->component};
+    switch (order_whole(order, 0)) {
     case 1: /* write */
-        if (dock->link.saving)
-            return MAV_RESULT_TEMPORARILY_REJECTED;
-        dock->requests |= 1u << DOCK_REQUEST_SAVE;
-        dock->link.save_ack = *ack;
-        dock->link.saving = true;
+        requests_save(&dock->requests);
+        link_answer_save_later(&dock->link, &later);
         return MAV_RESULT_IN_PROGRESS;
     case 2: /* back to the defaults; not yet in flash */
-        dock->settings = dock_default_settings();
-        link_settings_changed(dock, &before);
-        link_report_parameters(dock);
+        link_reset_parameters(dock);
         return MAV_RESULT_ACCEPTED;
     default:
         return MAV_RESULT_DENIED;
     }
 }
 
-static uint8_t reboot(dock_t *dock, const mavlink_command_long_t *command)
+static uint8_t reboot(dock_t *dock, const order_t *order)
 {
-    if (whole(&command->param1) != 1)
+    if (order_whole(order, 0) != 1)
         return MAV_RESULT_DENIED;
-    dock->requests |= 1u << DOCK_REQUEST_REBOOT;
+    requests_reboot(&dock->requests);
     return MAV_RESULT_ACCEPTED;
 }
 
-static uint8_t request_message(dock_t *dock,
-                               const mavlink_command_long_t *command)
+/* A new one, or packets of the last one again. */
+static uint8_t snapshot(dock_t *dock, const order_t *order)
 {
-    switch (whole(&command->param1)) {
-    case MAVLINK_MSG_ID_AUTOPILOT_VERSION:
-        dock->link.version_due = true;
-        return MAV_RESULT_ACCEPTED;
-    case MAVLINK_MSG_ID_DOCK_STATUS:
-        dock->link.status_due = true;
-        return MAV_RESULT_ACCEPTED;
-    default:
-        return MAV_RESULT_DENIED;
-    }
-}
-
-static uint8_t snapshot(dock_t *dock)
-{
+    const int64_t number = order_whole(order, 0);
     if (dock->board.buffer == NULL)
         return MAV_RESULT_UNSUPPORTED;
-    if (!link_can_snapshot(dock))
-        return MAV_RESULT_TEMPORARILY_REJECTED;
-    dock->link.snapshot_wanted = true;
-    return MAV_RESULT_ACCEPTED;
+    if (number > 0)
+        return link_repeat_snapshot(&dock->link, number, order_whole(order, 1),
+                                    order_whole(order, 2))
+                   ? MAV_RESULT_ACCEPTED
+                   : MAV_RESULT_DENIED;
+    return link_want_snapshot(&dock->link, order->now_ms)
+               ? MAV_RESULT_ACCEPTED
+               : MAV_RESULT_TEMPORARILY_REJECTED;
 }
 
-static uint8_t obey(dock_t *dock, const mavlink_command_long_t *command,
-                    const link_ack_t *ack)
-{
-    switch (command->command) {
-    case MAV_CMD_DOCK_LED:
-        return set_leds(dock, command);
-    case MAV_CMD_DOCK_SNAPSHOT:
-        return snapshot(dock);
-    case MAV_CMD_PREFLIGHT_STORAGE:
-        return store(dock, command, ack);
-    case MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN:
-        return reboot(dock, command);
-    case MAV_CMD_REQUEST_MESSAGE:
-        return request_message(dock, command);
-    case MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
-        dock->link.version_due = true;
-        return MAV_RESULT_ACCEPTED;
-    default:
-        return MAV_RESULT_UNSUPPORTED;
-    }
-}
+static const struct {
+    uint16_t command;
+    bool to_all; /* changes nothing: answered too where every system is asked */
+    link_obey_t *obey;
+} orders[] = {
+    {MAV_CMD_DOCK_LED, false, link_obey_led},
+    {MAV_CMD_DOCK_SNAPSHOT, false, snapshot},
+    {MAV_CMD_PREFLIGHT_STORAGE, false, store},
+    {MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, false, reboot},
+    {MAV_CMD_REQUEST_MESSAGE, true, link_obey_request_message},
+    {MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, true, link_obey_request_version},
+    {MAV_CMD_SET_MESSAGE_INTERVAL, false, link_obey_set_interval},
+    {MAV_CMD_GET_MESSAGE_INTERVAL, true, link_obey_get_interval},
+};
 
-void link_on_command(dock_t *dock, const received_t *message, uint32_t now_ms)
+#define ORDERS (sizeof orders / sizeof orders[0])
+
+static void obey(dock_t *dock, const order_t *order, bool to_all)
 {
-    (void)now_ms;
-    mavlink_command_long_t command;
-    message_read(&command, sizeof command, message);
-    if (!link_is_for_us(command.target_system, command.target_component))
+    link_ack_t ack = {order->command, MAV_RESULT_UNSUPPORTED, order->system,
+                      order->component};
+    size_t i = 0;
+    while (i < ORDERS && orders[i].command != order->command)
+        i++;
+    /* Of a command to everybody the vehicle does its part, and says so. */
+    if (to_all && (i == ORDERS || !orders[i].to_all))
         return;
-    link_ack_t ack = {command.command, MAV_RESULT_ACCEPTED, message->system,
-                      message->component};
-    ack.result = obey(dock, &command, &ack);
+    if (i < ORDERS)
+        ack.result = orders[i].obey(dock, order);
     if (ack.result == MAV_RESULT_DENIED)
-        dock->link.faults++;
-    if (ack.result != MAV_RESULT_IN_PROGRESS) /* that one is answered later */
-        link_acknowledge(dock, &ack);
+        link_count_fault(&dock->link);
+    link_acknowledge(&dock->link, &ack);
 }
 
-/* An answer that finds no room is dropped: the host asks again. */
-void link_acknowledge(dock_t *dock, const link_ack_t *ack)
+/* The four arguments come first in either message. */
+static order_t order_of(uint16_t command, const void *arguments,
+                        const received_t *message, uint32_t now_ms)
 {
-    link_t *link = &dock->link;
-    if (link->ack_count < LINK_ACKS)
-        link->acks[link->ack_count++] = *ack;
+    order_t order = {.command = command,
+                     .system = message->system,
+                     .component = message->component,
+                     .now_ms = now_ms};
+    memcpy(order.argument, arguments, sizeof order.argument);
+    return order;
 }
 
-bool link_send_acks(dock_t *dock, sender_t *sender)
+void link_on_command_long(dock_t *dock, const received_t *message,
+                          uint32_t now_ms)
 {
-    link_t *link = &dock->link;
-    while (link->ack_count > 0) {
-        const link_ack_t *ack = &link->acks[0];
-        mavlink_command_ack_t answer;
-        memset(&answer, 0, sizeof answer);
-        answer.command = ack->command;
-        answer.result = ack->result;
-        answer.target_system = ack->system;
-        answer.target_component = ack->component;
-        if (!MESSAGE_SEND(sender, COMMAND_ACK, &answer))
-            return false;
-        memmove(link->acks, link->acks + 1,
-                --link->ack_count * sizeof link->acks[0]);
-    }
-    return true;
+    mavlink_command_long_t c;
+    message_read(&c, sizeof c, message);
+    const order_t order = order_of(c.command, &c, message, now_ms);
+    if (link_is_for_us(&dock->link, c.target_system, c.target_component))
+        obey(dock, &order, c.target_system == 0);
+}
+
+/* The place that it has besides means nothing to a dock. */
+void link_on_command_int(dock_t *dock, const received_t *message,
+                         uint32_t now_ms)
+{
+    mavlink_command_int_t c;
+    message_read(&c, sizeof c, message);
+    const order_t order = order_of(c.command, &c, message, now_ms);
+    if (link_is_for_us(&dock->link, c.target_system, c.target_component))
+        obey(dock, &order, c.target_system == 0);
 }

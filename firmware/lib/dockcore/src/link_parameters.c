@@ -1,66 +1,81 @@
+/* MAVLink's parameter protocol: all values travel as floats. */
 #include <string.h>
 
 #include "link_parts.h"
 #include "parameter_table.h"
+#include "real32.h"
 
-_Static_assert(PARAMETER_COUNT <= 32, "a bit each in parameters_due");
+_Static_assert(PARAMETER_COUNT <= 32, "a bit each in link_turn_t");
 #define ALL_PARAMETERS ((uint32_t)((UINT64_C(1) << PARAMETER_COUNT) - 1))
-#define NAME_LENGTH 16
+#define NOT_A_NUMBER UINT32_C(0x7FC00000)
 
-/* Index by name, which has no zero at its end if it is 16 letters long; or -1.
- */
-static int find(const char name[NAME_LENGTH])
+uint32_t link_integer_of(uint32_t bits, uint8_t type)
 {
-    for (int i = 0; i < PARAMETER_COUNT; i++)
-        if (strncmp(PARAMETERS[i].name, name, NAME_LENGTH) == 0)
-            return i;
-    return -1;
+    switch (type) {
+    case MAV_PARAM_TYPE_UINT8:
+        return real32_from_fixed((uint8_t)bits, 0);
+    case MAV_PARAM_TYPE_INT8:
+        return real32_from_fixed((int8_t)bits, 0);
+    case MAV_PARAM_TYPE_UINT16:
+        return real32_from_fixed((uint16_t)bits, 0);
+    case MAV_PARAM_TYPE_INT16:
+        return real32_from_fixed((int16_t)bits, 0);
+    case MAV_PARAM_TYPE_UINT32:
+        return real32_from_fixed(bits, 0);
+    case MAV_PARAM_TYPE_INT32:
+        return real32_from_fixed((int32_t)bits, 0);
+    default:
+        return NOT_A_NUMBER;
+    }
 }
 
-static void add_shown(line_t *line, const parameter_t *parameter,
-                      int32_t stored)
+/* The number that a PARAM_SET carries, as bits of an IEEE 754 one.  Some hosts
+ * cast every value to a float; others put an integer's own bytes there and say
+ * so by its type.  The two cannot be confused: an integer below 2^23, more than
+ * any parameter needs, has the bytes of a float that is subnormal or none, and
+ * no integer's float is either.  Bytes like that without an integer's type are
+ * refused: as a float they would count as zero. */
+static uint32_t number_of(uint32_t bits, uint8_t type)
 {
-    line_add_fixed(line, (int64_t)stored * parameter->numerator,
-                   parameter->shift);
+    const uint32_t exponent = bits >> 23 & 0xFF;
+    const bool zero = bits << 1 == 0;
+    if (zero || (exponent != 0 && exponent != 0xFF))
+        return bits;
+    return link_integer_of(bits, type);
 }
 
-static void refuse_name(dock_t *dock, const char name[NAME_LENGTH])
+void link_turn_all(link_turn_t *turn)
 {
-    char words[NAME_LENGTH + 1];
-    memcpy(words, name, NAME_LENGTH);
-    words[NAME_LENGTH] = '\0';
-    line_t line = {{0}, 0};
-    line_add(&line, words);
-    line_add(&line, ": no such parameter");
-    link_say(dock, MAV_SEVERITY_WARNING, &line);
-    dock->link.faults++;
+    turn->due = ALL_PARAMETERS;
 }
 
-static void refuse_index(dock_t *dock, int index)
+void link_turn_one(link_turn_t *turn, int index)
 {
-    line_t line = {{0}, 0};
-    line_add(&line, "parameter ");
-    line_add_fixed(&line, index, 0);
-    line_add(&line, ": no such parameter");
-    link_say(dock, MAV_SEVERITY_WARNING, &line);
-    dock->link.faults++;
+    turn->due |= UINT32_C(1) << index;
 }
 
-static void refuse_value(dock_t *dock, const parameter_t *parameter)
+/* Begins where it stopped: whoever asks for all of them again and again, on a
+ * slow line, gets the last ones too. */
+bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
+                       link_send_one_t *send_one)
 {
-    line_t line = {{0}, 0};
-    line_add(&line, parameter->name);
-    line_add(&line, " refused: allowed ");
-    add_shown(&line, parameter, parameter->minimum);
-    line_add(&line, " to ");
-    add_shown(&line, parameter, parameter->maximum);
-    link_say(dock, MAV_SEVERITY_WARNING, &line);
-    dock->link.faults++;
+    for (; turn->due != 0;
+         turn->next = (uint8_t)((turn->next + 1) % PARAMETER_COUNT)) {
+        const uint32_t bit = UINT32_C(1) << turn->next;
+        if ((turn->due & bit) == 0)
+            continue;
+        if (!send_one(dock, turn->next, sender))
+            return false;
+        turn->due &= ~bit;
+    }
+    turn->next = 0;
+    return true;
 }
 
-void link_report_parameters(dock_t *dock)
+void link_reset_parameters(dock_t *dock)
 {
-    dock->link.parameters_due = ALL_PARAMETERS;
+    link_reset_settings(dock);
+    link_turn_all(&dock->link.parameters);
 }
 
 void link_on_parameter_list(dock_t *dock, const received_t *message,
@@ -69,8 +84,9 @@ void link_on_parameter_list(dock_t *dock, const received_t *message,
     (void)now_ms;
     mavlink_param_request_list_t request;
     message_read(&request, sizeof request, message);
-    if (link_is_for_us(request.target_system, request.target_component))
-        link_report_parameters(dock);
+    if (link_is_for_us(&dock->link, request.target_system,
+                       request.target_component))
+        link_turn_all(&dock->link.parameters);
 }
 
 void link_on_parameter_read(dock_t *dock, const received_t *message,
@@ -79,36 +95,13 @@ void link_on_parameter_read(dock_t *dock, const received_t *message,
     (void)now_ms;
     mavlink_param_request_read_t request;
     message_read(&request, sizeof request, message);
-    if (!link_is_for_us(request.target_system, request.target_component))
+    if (!link_is_for_us(&dock->link, request.target_system,
+                        request.target_component))
         return;
-    const int index =
-        request.param_index >= 0 ? request.param_index : find(request.param_id);
-    if (index < 0)
-        refuse_name(dock, request.param_id);
-    else if (index < PARAMETER_COUNT)
-        dock->link.parameters_due |= UINT32_C(1) << index;
-    else
-        refuse_index(dock, index);
-}
-
-_Static_assert((int)DOCK_LED_AUTO == 0 && (int)DOCK_LED_HUE == 1,
-               "LED_MODE's values are DOCK_LED's first two");
-
-static bool same_camera(const camera_settings_t *a, const camera_settings_t *b)
-{
-    return a->lock == b->lock && a->exposure == b->exposure &&
-           a->gain == b->gain && a->white_balance == b->white_balance;
-}
-
-void link_settings_changed(dock_t *dock, const dock_settings_t *before)
-{
-    const dock_settings_t *now = &dock->settings;
-    if (!same_camera(&before->camera, &now->camera))
-        dock->requests |= 1u << DOCK_REQUEST_CAMERA;
-    if (before->led_mode != now->led_mode || before->led_hue != now->led_hue) {
-        dock->led_mode = now->led_mode;
-        dock->led_hue = now->led_hue;
-    }
+    const int index = link_asked_parameter(&dock->link, request.param_index,
+                                           request.param_id);
+    if (index >= 0)
+        link_turn_one(&dock->link.parameters, index);
 }
 
 void link_on_parameter_set(dock_t *dock, const received_t *message,
@@ -117,43 +110,38 @@ void link_on_parameter_set(dock_t *dock, const received_t *message,
     (void)now_ms;
     mavlink_param_set_t request;
     message_read(&request, sizeof request, message);
-    if (!link_is_for_us(request.target_system, request.target_component))
+    if (!link_is_for_this(&dock->link, request.target_system,
+                          request.target_component))
         return;
-    const int index = find(request.param_id);
+    const int index = link_find_parameter(&dock->link, request.param_id);
     if (index < 0) {
-        refuse_name(dock, request.param_id);
+        link_count_fault(&dock->link);
         return;
     }
-    const dock_settings_t before = dock->settings;
     uint32_t bits;
-    int32_t stored;
     memcpy(&bits, &request.param_value, sizeof bits);
-    if (!parameter_from_real32(&PARAMETERS[index], bits, &stored) ||
-        !parameter_set(&PARAMETERS[index], &dock->settings, stored))
-        refuse_value(dock, &PARAMETERS[index]);
-    link_settings_changed(dock, &before);
+    link_set_parameter(dock, index, number_of(bits, request.param_type));
     /* The value as it is now, refused or not: that is the answer. */
-    dock->link.parameters_due |= UINT32_C(1) << index;
+    link_turn_one(&dock->link.parameters, index);
 }
 
-bool link_send_parameters(dock_t *dock, sender_t *sender)
+static bool send_value(const dock_t *dock, uint16_t index, sender_t *sender)
 {
-    for (uint16_t i = 0; i < PARAMETER_COUNT; i++) {
-        const uint32_t bit = UINT32_C(1) << i;
-        if ((dock->link.parameters_due & bit) == 0)
-            continue;
-        mavlink_param_value_t value;
-        memset(&value, 0, sizeof value);
-        const uint32_t shown = parameter_to_real32(
-            &PARAMETERS[i], parameter_get(&PARAMETERS[i], &dock->settings));
-        memcpy(&value.param_value, &shown, sizeof shown);
-        memcpy(value.param_id, PARAMETERS[i].name, strlen(PARAMETERS[i].name));
-        value.param_type = MAV_PARAM_TYPE_REAL32;
-        value.param_count = PARAMETER_COUNT;
-        value.param_index = i;
-        if (!MESSAGE_SEND(sender, PARAM_VALUE, &value))
-            return false;
-        dock->link.parameters_due &= ~bit;
-    }
-    return true;
+    const parameter_t *parameter = &PARAMETERS[index];
+    const uint32_t shown = parameter_to_real32(
+        parameter, parameter_get(parameter, &dock->settings));
+    mavlink_param_value_t value;
+    memset(&value, 0, sizeof value);
+    memcpy(&value.param_value, &shown, sizeof shown);
+    memcpy(value.param_id, parameter->name, strlen(parameter->name));
+    value.param_type = MAV_PARAM_TYPE_REAL32;
+    value.param_count = PARAMETER_COUNT;
+    value.param_index = index;
+    return MESSAGE_SEND(sender, PARAM_VALUE, &value);
+}
+
+bool link_send_parameters(dock_t *dock, sender_t *sender, uint32_t now_ms)
+{
+    (void)now_ms;
+    return link_send_in_turn(dock, &dock->link.parameters, sender, send_value);
 }

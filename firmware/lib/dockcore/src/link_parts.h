@@ -1,10 +1,22 @@
-/* What the files of the link offer each other.  Handlers take a message from
- * the host; senders return false when the next message does not fit. */
+/* What the files of the link offer each other and dock.c. */
 #ifndef LINK_PARTS_H
 #define LINK_PARTS_H
 
-#include "dock.h"
+#include "dock_state.h"
 #include "messages.h"
+
+/* Takes a message that has come whole, whoever it is for. */
+typedef void link_handler_t(dock_t *dock, const received_t *message,
+                            uint32_t now_ms);
+
+/* Sends what it has.  Returns false when its next message does not fit. */
+typedef bool link_sender_t(dock_t *dock, sender_t *sender, uint32_t now_ms);
+
+/* link.c: see dock.h */
+void link_receive(dock_t *dock, const uint8_t *bytes, size_t n,
+                  uint32_t now_ms);
+size_t link_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
+                     uint32_t now_ms);
 
 /* link_texts.c: one line for the person at the ground station. */
 typedef struct {
@@ -13,47 +25,102 @@ typedef struct {
 } line_t;
 void line_add(line_t *line, const char *words);
 void line_add_fixed(line_t *line, int64_t n, uint8_t shift); /* n / 2^shift */
-void link_say(dock_t *dock, uint8_t severity, const line_t *line);
-void link_say_words(dock_t *dock, uint8_t severity, const char *words);
-bool link_send_texts(dock_t *dock, sender_t *sender);
+void link_say(link_t *link, uint8_t severity, const line_t *line);
+void link_say_words(link_t *link, uint8_t severity, const char *words);
+link_sender_t link_send_texts;
+
+/* link_acks.c */
+void link_acknowledge(link_t *link, const link_ack_t *ack);
+void link_answer_save_later(link_t *link, const link_ack_t *ack);
+void link_answer_save(link_t *link, bool written);
+bool link_has_answered(const link_t *link); /* every command but a save */
+link_sender_t link_send_acks;
 
 /* link_commands.c */
-void link_on_command(dock_t *dock, const received_t *message, uint32_t now_ms);
-bool link_send_acks(dock_t *dock, sender_t *sender);
-void link_acknowledge(dock_t *dock, const link_ack_t *ack);
+link_handler_t link_on_command_long, link_on_command_int;
+
+/* link_settings.c: both return an index, or say that there is none: -1. */
+int link_find_parameter(link_t *link, const char name[16]);
+int link_asked_parameter(link_t *link, int16_t index, const char name[16]);
+bool link_set_parameter(dock_t *dock, int index, uint32_t real32); /* or says
+                                                        why it does not */
+void link_reset_settings(dock_t *dock); /* to the defaults */
 
 /* link_parameters.c */
-void link_on_parameter_list(dock_t *dock, const received_t *message,
-                            uint32_t now_ms);
-void link_on_parameter_read(dock_t *dock, const received_t *message,
-                            uint32_t now_ms);
-void link_on_parameter_set(dock_t *dock, const received_t *message,
-                           uint32_t now_ms);
-bool link_send_parameters(dock_t *dock, sender_t *sender);
-void link_report_parameters(dock_t *dock); /* all of them */
-/* After any change of the settings: what follows from it. */
-void link_settings_changed(dock_t *dock, const dock_settings_t *before);
+typedef bool link_send_one_t(const dock_t *dock, uint16_t index,
+                             sender_t *sender);
+link_handler_t link_on_parameter_list, link_on_parameter_read,
+    link_on_parameter_set;
+link_sender_t link_send_parameters;
+void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
+void link_turn_all(link_turn_t *turn);
+void link_turn_one(link_turn_t *turn, int index);
+bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
+                       link_send_one_t *send_one);
+/* An integer of a MAV_PARAM_TYPE that begins with these bytes, as bits of an
+ * IEEE 754 number; not a number for the other types. */
+uint32_t link_integer_of(uint32_t bits, uint8_t type);
 
-/* link_images.c */
-void link_on_handshake(dock_t *dock, const received_t *message,
-                       uint32_t now_ms);
-void link_on_packet(dock_t *dock, const received_t *message, uint32_t now_ms);
-bool link_can_snapshot(const dock_t *dock);
-void link_take_snapshot(dock_t *dock, const frame_t *frame);
-bool link_send_snapshot(dock_t *dock, sender_t *sender);
+/* link_typed.c */
+link_handler_t link_on_typed_list, link_on_typed_read, link_on_typed_set;
+link_sender_t link_send_typed;
+
+/* link_images.c: what snapshots and injected frames have in common. */
+#define PACKET MAVLINK_MSG_ENCAPSULATED_DATA_FIELD_DATA_LEN
+uint16_t link_packets_of(uint32_t size);
+bool link_send_handshake(sender_t *sender, const link_image_t *image);
+
+/* link_snapshot.c */
+bool link_want_snapshot(link_t *link, uint32_t now_ms); /* false: not now */
+bool link_repeat_snapshot(link_t *link, int64_t number, int64_t first,
+                          int64_t count); /* false: there is no such packet */
+void link_expire_snapshot(link_t *link, uint32_t now_ms); /* a wish */
+void link_forget_snapshot(link_t *link); /* the buffer is taken for another */
+void link_take_snapshot(dock_t *dock, const frame_t *frame,
+                        uint32_t now_ms); /* if one is wanted */
+link_sender_t link_send_snapshot;
+
+/* link_injection.c */
+link_handler_t link_on_handshake, link_on_packet;
+bool link_injection_lasts(link_t *link, uint32_t now_ms); /* or ends it */
+link_sender_t link_send_echo;
 
 /* link_reports.c */
-bool link_send_reports(dock_t *dock, sender_t *sender, uint32_t now_ms);
+int link_report_of(int64_t id); /* a report_t; -1 for another message */
+void link_ask_for_report(link_t *link, report_t report);
+void link_ask_for_interval(link_t *link, uint16_t id);
+void link_set_period(link_t *link, report_t report, uint32_t period_ms);
+link_sender_t link_send_reports;
 
-/* dock.c: decide on a frame wherever it comes from; false if it is not valid.
- */
-bool dock_decide(dock_t *dock, const frame_t *frame, uint32_t now_ms);
-
-/* True for a message to this dock or to all. */
-static inline bool link_is_for_us(uint8_t system, uint8_t component)
+static inline void link_count_fault(link_t *link)
 {
-    return (system == DOCK_ID_SYSTEM || system == 0) &&
+    link->faults++;
+}
+
+static inline bool link_is_sending_snapshot(const link_t *link)
+{
+    return link->snapshot.state >= SNAPSHOT_TAKEN;
+}
+
+static inline bool link_is_injecting(const link_t *link)
+{
+    return link->injection.state != INJECTION_OFF;
+}
+
+/* True for a message to this dock, or to a component of every system. */
+static inline bool link_is_for_us(const link_t *link, uint8_t system,
+                                  uint8_t component)
+{
+    return (system == link->system || system == 0) &&
            (component == DOCK_ID_COMPONENT || component == 0);
+}
+
+/* True for a message to this dock, not to every system: one that changes
+ * something. */
+static inline bool link_is_for_this(const link_t *link, uint8_t system,
+                                    uint8_t component)
+{
+    return system != 0 && link_is_for_us(link, system, component);
 }
 
 #endif

@@ -35,36 +35,37 @@ void line_add_fixed(line_t *line, int64_t n, uint8_t shift)
 }
 
 /* A text that finds no room is dropped: the older ones explain it. */
-void link_say(dock_t *dock, uint8_t severity, const line_t *line)
+void link_say(link_t *link, uint8_t severity, const line_t *line)
 {
-    link_t *link = &dock->link;
-    if (link->text_count == LINK_TEXTS)
+    link_texts_t *texts = &link->texts;
+    if (texts->count == LINK_TEXTS)
         return;
-    link_text_t *text = &link->texts[link->text_count++];
-    text->severity = severity;
-    memset(text->text, 0, sizeof text->text);
-    memcpy(text->text, line->text, line->length);
+    const uint8_t last = texts->count++;
+    texts->waiting[last].severity = severity;
+    memset(texts->waiting[last].text, 0, LINK_TEXT_LENGTH);
+    memcpy(texts->waiting[last].text, line->text, line->length);
 }
 
-void link_say_words(dock_t *dock, uint8_t severity, const char *words)
+void link_say_words(link_t *link, uint8_t severity, const char *words)
 {
     line_t line = {{0}, 0};
     line_add(&line, words);
-    link_say(dock, severity, &line);
+    link_say(link, severity, &line);
 }
 
-bool link_send_texts(dock_t *dock, sender_t *sender)
+bool link_send_texts(dock_t *dock, sender_t *sender, uint32_t now_ms)
 {
-    link_t *link = &dock->link;
-    while (link->text_count > 0) {
+    (void)now_ms;
+    link_texts_t *texts = &dock->link.texts;
+    while (texts->count > 0) {
         mavlink_statustext_t text;
         memset(&text, 0, sizeof text);
-        text.severity = link->texts[0].severity;
-        memcpy(text.text, link->texts[0].text, sizeof text.text);
+        text.severity = texts->waiting[0].severity;
+        memcpy(text.text, texts->waiting[0].text, sizeof text.text);
         if (!MESSAGE_SEND(sender, STATUSTEXT, &text))
             return false;
-        memmove(link->texts, link->texts + 1,
-                --link->text_count * sizeof link->texts[0]);
+        memmove(texts->waiting, texts->waiting + 1,
+                --texts->count * sizeof texts->waiting[0]);
     }
     return true;
 }

@@ -1,8 +1,27 @@
 #include "messages.h"
 
+#include <chromadock/crc_extras.h>
 #include <string.h>
 
 #define HEADER 10
+
+static const uint16_t ids[] = MAVLINK_CRC_IDS;
+static const uint8_t extras[] = MAVLINK_CRC_EXTRAS;
+
+int message_crc_extra(uint32_t id)
+{
+    size_t first = 0, end = sizeof extras;
+    while (first < end) {
+        const size_t middle = (first + end) / 2;
+        if (ids[middle] == id)
+            return extras[middle];
+        if (ids[middle] < id)
+            first = middle + 1;
+        else
+            end = middle;
+    }
+    return -1;
+}
 
 bool message_send(sender_t *sender, uint32_t id, uint8_t crc_extra,
                   const void *payload, uint8_t length)
@@ -20,7 +39,7 @@ bool message_send(sender_t *sender, uint32_t id, uint8_t crc_extra,
         0,
         0,
         (*sender->sequence)++,
-        DOCK_ID_SYSTEM,
+        sender->system,
         DOCK_ID_COMPONENT,
         (uint8_t)id,
         (uint8_t)(id >> 8),

@@ -21,11 +21,16 @@ static inline uint16_t message_checksum(const uint8_t *bytes, size_t n,
     return sum;
 }
 
+/* What the checksum of a message begins with; -1 for an id that neither
+ * MAVLink's common messages nor the dock's own have. */
+int message_crc_extra(uint32_t id);
+
 /* Where messages go: a buffer that takes whole messages only. */
 typedef struct {
     uint8_t *bytes;
     size_t length, capacity;
     uint8_t *sequence;
+    uint8_t system; /* whose messages they are */
 } sender_t;
 
 /* False, nothing written, where it does not fit.  The payload is mavgen's

@@ -4,9 +4,6 @@
 
 #include "parameter.h"
 
-/* Changes with the table: a blob of another version is not read. */
-#define PARAMETER_TABLE_VERSION UINT32_C(0x302025fa)
-
 enum {
     PARAMETER_MAPPING,
     PARAMETER_WINDOW_MS,
@@ -33,7 +30,10 @@ enum {
     PARAMETER_CAM_GAIN,
     PARAMETER_CAM_WB,
     PARAMETER_REPORT_HZ,
+    PARAMETER_LED_LIMIT_DARK,
+    PARAMETER_DECISION_MS,
     PARAMETER_LINK_BAUD,
+    PARAMETER_SYSTEM_ID,
     PARAMETER_COUNT
 };
 

@@ -1,6 +1,12 @@
-/* Finds MAVLink 2 messages in a stream that may hold anything else: boot text,
- * driver text, noise, halves of messages.  A damaged message costs itself and
- * nothing more: the search goes on one byte after its start. */
+/* Finds MAVLink messages, of version 2 and 1, in a stream that may hold
+ * anything else: boot text, driver text, noise, halves of messages.
+ *
+ * A whole message is passed over with everything in it, for what it carries may
+ * look like a message: a tunnel, or the file of a log.  The checksum tells that
+ * it is whole.  Of a message whose id nobody here knows it cannot be computed;
+ * such a one, of version 2, counts as whole where another message or silence
+ * follows right behind it.  A damaged message costs itself and nothing more:
+ * the search goes on one byte after its start. */
 #ifndef RECEIVER_H
 #define RECEIVER_H
 
@@ -8,8 +14,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* 10 header, 255 payload, 2 checksum, 13 signature. */
-#define RECEIVER_CAPACITY 280
+/* 10 header, 255 payload, 2 checksum, 13 signature, 1 of what follows. */
+#define RECEIVER_CAPACITY 281
 
 /* What follows a false start for so long without an end was no message. */
 #define RECEIVER_PATIENCE_MS 200
@@ -34,8 +40,8 @@ size_t receiver_put(receiver_t *receiver, const uint8_t *bytes, size_t n,
                     uint32_t now_ms);
 
 /* The next message, which stays until receiver_done; false where more bytes are
- * needed.  `crc_extra` returns the message's seed, or -1 for one that nobody
- * here reads. */
+ * needed.  `crc_extra` returns what a message's checksum begins with, or -1 for
+ * an id that it does not know. */
 bool receiver_next(receiver_t *receiver, int (*crc_extra)(uint32_t id),
                    received_t *message);
 

@@ -3,8 +3,6 @@
 #ifndef SETTINGS_H
 #define SETTINGS_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "led.h"
@@ -25,23 +23,20 @@ typedef struct {
     led_settings_t led;
     camera_settings_t camera;
     uint8_t report_hz;
-    uint32_t link_baud; /* from the next start on */
+    uint16_t decision_ms; /* at least, from one to the next; 0: every frame */
+    uint32_t link_baud;   /* from the next start on */
+    uint8_t system_id;    /* MAVLink's, from the next start on */
 } dock_settings_t;
 
 dock_settings_t dock_default_settings(void);
 
-/* True where every parameter is in its range. */
-bool dock_settings_are_valid(const dock_settings_t *settings);
+/* The default settings, but the brightness limit and the polarity of the LED
+ * outputs as they are in *now: these two belong to the wiring, and with the
+ * wrong ones the LEDs would be full on where they should be dark. */
+dock_settings_t dock_reset_settings(const dock_settings_t *now);
 
-/* For flash: version, every parameter, CRC-32. */
-#define SETTINGS_BLOB_BYTES 112
-
-void settings_to_blob(const dock_settings_t *settings,
-                      uint8_t blob[SETTINGS_BLOB_BYTES]);
-
-/* False, *settings untouched, for a blob of another length or version, a wrong
- * CRC or a value out of range. */
-bool settings_from_blob(dock_settings_t *settings, const uint8_t *blob,
-                        size_t length);
+/* Gives each parameter that is out of its range its default value.  Returns how
+ * many these were: 0 if all settings are valid. */
+int dock_mend_settings(dock_settings_t *settings);
 
 #endif

@@ -1,8 +1,10 @@
+#include "smooth.h"
+
 #include <string.h>
 
-#include "working_image.h"
+#include "pixel.h"
 
-#define WIDTH METHOD_WORKING_WIDTH
+#define WIDTH WORKING_WIDTH
 
 /* Sums of all three channels at once, up to 16 * 255 each.  In `all` red and
  * green have grown into each other; without `red_blue`, green is left. */
@@ -54,12 +56,26 @@ static void smooth_row(uint32_t *row, uint32_t *above, const uint32_t *below)
     row[WIDTH - 1] = sixteenth(plus(right, plus(last, last)));
 }
 
-void working_image_smooth(working_image_t *image)
+void smoothed_open(smoothed_t *smoothed, const frame_t *frame)
 {
-    uint32_t above[WIDTH];
-    uint32_t *row = image->pixel, *const last = row + (WORKING_PIXELS - WIDTH);
-    memcpy(above, row, sizeof above);
-    for (; row < last; row += WIDTH)
-        smooth_row(row, above, row + WIDTH);
-    smooth_row(row, above, row);
+    working_image_open(&smoothed->working, frame);
+}
+
+void smoothed_rows(void *smoothed, row_taker_t *take, void *context)
+{
+    smoothed_t *const s = smoothed;
+    uint32_t *here = s->row[0], *below = s->row[1];
+    working_image_row(&s->working, 0, here);
+    memcpy(s->above, here, sizeof s->above);
+    for (uint32_t y = 1; y < WORKING_HEIGHT; y++) {
+        working_image_row(&s->working, y, below);
+        smooth_row(here, s->above, below);
+        take(context, here);
+        uint32_t *const taken = here;
+        here = below;
+        below = taken;
+    }
+    memcpy(below, here, sizeof s->above);
+    smooth_row(here, s->above, below);
+    take(context, here);
 }

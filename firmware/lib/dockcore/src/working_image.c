@@ -1,19 +1,18 @@
 #include "working_image.h"
 
+#include "pixel.h"
 #include "qqvga.h"
 
-/* First source pixel of each cell along one axis, and the last cell's end. */
-static void set_edges(uint16_t *edge, uint32_t pixels, uint32_t cells)
+/* First source pixel of cell i of `cells` along an axis. */
+static uint32_t edge(uint32_t i, uint32_t pixels, uint32_t cells)
 {
-    for (uint32_t i = 0; i <= cells; i++)
-        edge[i] = (uint16_t)(i * pixels / cells);
+    return i * pixels / cells;
 }
 
 /* Source pixels from one edge to the next: at least one. */
-static uint32_t span(const uint16_t *edge)
+static uint32_t span(uint32_t from, uint32_t to)
 {
-    const uint32_t size = (uint32_t)edge[1] - edge[0];
-    return size > 0 ? size : 1;
+    return to > from ? to - from : 1;
 }
 
 /* The mean of `sum` over `count` pixels of full scale `full`, on 0..255, is
@@ -67,49 +66,60 @@ static sums_t sum_rgb888(const uint8_t *row, size_t stride, uint32_t width,
     return sums;
 }
 
-/* A frame of any size. */
-static void average(working_image_t *image, const frame_t *frame)
+void working_image_open(working_image_t *image, const frame_t *frame)
 {
-    const bool rgb565 = frame->format == FRAME_RGB565;
-    const size_t step = rgb565 ? 2 : 3;
-    const size_t stride = step * frame->width;
-    uint16_t column[METHOD_WORKING_WIDTH + 1], row[METHOD_WORKING_HEIGHT + 1];
-    set_edges(column, frame->width, METHOD_WORKING_WIDTH);
-    set_edges(row, frame->height, METHOD_WORKING_HEIGHT);
+    image->frame = frame;
+    image->is_qqvga = qqvga_is_rgb565(frame);
+    if (image->is_qqvga)
+        return;
+    for (uint32_t i = 0; i <= WORKING_WIDTH; i++)
+        image->column[i] = (uint16_t)edge(i, frame->width, WORKING_WIDTH);
 
-    /* The first cell is the narrowest; others are as wide or one pixel wider.
-     */
-    const uint32_t narrow = span(column), low = span(row);
-    uint64_t green[2][2], other[2][2]; /* [one row more][one column more] */
+    /* The first cell is the smallest; others are as large or one pixel larger
+     * either way. */
+    const uint32_t narrow = span(0, image->column[1]);
+    const uint32_t low = span(0, edge(1, frame->height, WORKING_HEIGHT));
+    const bool rgb565 = frame->format == FRAME_RGB565;
+    image->narrow = (uint16_t)narrow;
+    image->low = (uint16_t)low;
     for (uint32_t i = 0; i < 4; i++) {
         const uint32_t count = (low + i / 2) * (narrow + i % 2);
-        green[i / 2][i % 2] = mean_scale(rgb565 ? 63 : 255, count);
-        other[i / 2][i % 2] = mean_scale(rgb565 ? 31 : 255, count);
-    }
-
-    uint32_t *out = image->pixel;
-    for (uint32_t y = 0; y < METHOD_WORKING_HEIGHT; y++) {
-        const uint32_t height = span(row + y);
-        for (uint32_t x = 0; x < METHOD_WORKING_WIDTH; x++) {
-            const uint32_t width = span(column + x);
-            const uint8_t *box =
-                frame->bytes + row[y] * stride + column[x] * step;
-            const sums_t sums = rgb565 ? sum_rgb565(box, stride, width, height)
-                                       : sum_rgb888(box, stride, width, height);
-            const uint64_t *green_scale = green[height - low];
-            const uint64_t *other_scale = other[height - low];
-            *out++ =
-                pixel_pack(mean_of(sums.red, other_scale[width - narrow]),
-                           mean_of(sums.green, green_scale[width - narrow]),
-                           mean_of(sums.blue, other_scale[width - narrow]));
-        }
+        image->green_scale[i / 2][i % 2] = mean_scale(rgb565 ? 63 : 255, count);
+        image->other_scale[i / 2][i % 2] = mean_scale(rgb565 ? 31 : 255, count);
     }
 }
 
-void working_image_from_frame(working_image_t *image, const frame_t *frame)
+/* A row of a frame of any size. */
+static void average_row(const working_image_t *image, uint32_t y,
+                        uint32_t row[WORKING_WIDTH])
 {
-    if (qqvga_is_rgb565(frame))
-        qqvga_average(image, frame);
+    const frame_t *frame = image->frame;
+    const bool rgb565 = frame->format == FRAME_RGB565;
+    const size_t step = rgb565 ? 2 : 3;
+    const size_t stride = step * frame->width;
+    const uint32_t top = edge(y, frame->height, WORKING_HEIGHT);
+    const uint32_t height =
+        span(top, edge(y + 1, frame->height, WORKING_HEIGHT));
+    const uint64_t *green_scale = image->green_scale[height - image->low];
+    const uint64_t *other_scale = image->other_scale[height - image->low];
+    for (uint32_t x = 0; x < WORKING_WIDTH; x++) {
+        const uint32_t left = image->column[x];
+        const uint32_t width = span(left, image->column[x + 1]);
+        const uint8_t *box = frame->bytes + top * stride + left * step;
+        const sums_t sums = rgb565 ? sum_rgb565(box, stride, width, height)
+                                   : sum_rgb888(box, stride, width, height);
+        const uint32_t wider = width - image->narrow;
+        row[x] = pixel_pack(mean_of(sums.red, other_scale[wider]),
+                            mean_of(sums.green, green_scale[wider]),
+                            mean_of(sums.blue, other_scale[wider]));
+    }
+}
+
+void working_image_row(const working_image_t *image, uint32_t y,
+                       uint32_t row[WORKING_WIDTH])
+{
+    if (image->is_qqvga)
+        qqvga_row(image->frame, y, row);
     else
-        average(image, frame);
+        average_row(image, y, row);
 }

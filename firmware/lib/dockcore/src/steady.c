@@ -1,0 +1,52 @@
+#include "steady.h"
+
+#include <string.h>
+
+void steady_init(steady_t *steady)
+{
+    memset(steady, 0, sizeof *steady);
+    rolling_init(&steady->rolling);
+}
+
+void steady_show(steady_t *steady, uint16_t hue)
+{
+    rolling_init(&steady->rolling);
+    steady->shown = hue;
+}
+
+void steady_let_go(steady_t *steady)
+{
+    steady->begun = false;
+}
+
+bool steady_takes(steady_t *steady, bool like, uint32_t hold_ms,
+                  uint32_t now_ms)
+{
+    if (!like && steady->begun && now_ms - steady->agreed_ms < hold_ms)
+        return false;
+    if (!like)
+        rolling_init(&steady->rolling);
+    return true;
+}
+
+void steady_wait(steady_t *steady, uint32_t now_ms)
+{
+    steady->agreed_ms = now_ms;
+}
+
+void steady_take(steady_t *steady, bool meaningful, uint16_t hue,
+                 uint32_t window_ms, uint32_t now_ms)
+{
+    steady->begun = true;
+    steady->agreed_ms = now_ms;
+    steady->meaningful = meaningful;
+    steady->shown = rolling_add(&steady->rolling, hue, now_ms, window_ms);
+}
+
+void steady_add(steady_t *steady, bool meaningful, uint16_t hue,
+                uint32_t window_ms, uint32_t now_ms)
+{
+    const bool like = steady->begun && meaningful == steady->meaningful;
+    if (steady_takes(steady, like, METHOD_HOLD_MS, now_ms))
+        steady_take(steady, meaningful, hue, window_ms, now_ms);
+}

@@ -98,6 +98,7 @@ TABLE: dict[str, Instead | Not] = {
         "most of a minute; tests/host/evaluate/test_evaluate_cli.py runs smaller experiments"
     ),
     ".venv/bin/python -m pytest tests/parity -n 2": Not("these tests themselves"),
+    ".venv/bin/pio run": Not("PlatformIO's registry; CI builds for the board"),
     ".venv/bin/pio test -e native -f test_led": Not("make test runs all of pio test beside these"),
     ".venv/bin/python tools/xtensa.py": Not("tests/parity/test_xtensa.py runs it"),
     ".venv/bin/python tools/hardware.py -k leds --port=/dev/ttyUSB0": Not(

@@ -211,6 +211,6 @@ def _own_duties(dock: Any, colour: str | None) -> tuple[int, int, int] | None:
 
 
 def power_share(duties: tuple[int, int, int], full: int) -> tuple[float, float, float]:
-    """What common-anode LEDs, which are on while their pin is low, give at these duties."""
-    red, green, blue = (1 - np.array(duties) / full).tolist()
+    """What LEDs give at these duties, which are on while their pin is high: LED_ANODE 0."""
+    red, green, blue = (np.array(duties) / full).tolist()
     return red, green, blue

@@ -18,6 +18,7 @@ from chromadock.link.rgb565 import HEIGHT, WIDTH, to_rgb565
 
 FRAMES = 480
 _KEPT_MS = 6000
+_STARTED_MS = method.WINDOW_MS + 1000
 
 
 def write_frames(folder: Path) -> list[int]:
@@ -81,7 +82,8 @@ class Truth:
         if status.led_mode != 0:
             self.wrong.append(f"{now} ms: LED mode {status.led_mode}")
         means = {self._mean(frames, count) for count in self._window(now, frames)}
-        if status.marker_hue not in means:
+        # A frame in which the lamps were lit for the first time is none to decide on.
+        if now > _STARTED_MS and status.marker_hue not in means:
             self.wrong.append(f"{now} ms: mean {status.marker_hue}, not of {sorted(means)}")
         if duties != _duties(status.marker_hue):
             self.wrong.append(f"{now} ms: duties {duties} for hue {status.marker_hue}")

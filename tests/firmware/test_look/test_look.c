@@ -187,6 +187,21 @@ static void test_water_that_looks_like_the_lamps_is_doubted_within_seconds(void)
     TEST_ASSERT_LESS_THAN(2000, now - from);
 }
 
+static void test_water_of_the_markers_own_hue_is_not_doubted(void)
+{
+    static const double brown[3] = {0.2, 0.03, 0.01}; /* contrast has red */
+    start(METHOD_MAPPING_CONTRAST);
+    set_scene(brown, 0);
+    run(10);
+    TEST_ASSERT_LESS_THAN(
+        30 * METHOD_HUE_RANGE / 360,
+        hue_distance(dock.decision.background.hue, dock_hue(&dock)));
+    for (const uint32_t end = now + 300000; now < end;) {
+        turn(AGE);
+        TEST_ASSERT_TRUE(dock.look.clear);
+    }
+}
+
 static void test_a_frame_that_began_before_the_lamps_were_out_is_no_look(void)
 {
     start(METHOD_MAPPING_TERNARY);
@@ -356,6 +371,7 @@ static void run_tests(void)
     RUN_TEST(test_by_day_too_only_frames_without_own_light_decide);
     RUN_TEST(test_where_own_light_is_gone_all_frames_decide_again);
     RUN_TEST(test_water_that_looks_like_the_lamps_is_doubted_within_seconds);
+    RUN_TEST(test_water_of_the_markers_own_hue_is_not_doubted);
     RUN_TEST(test_a_frame_that_began_before_the_lamps_were_out_is_no_look);
     RUN_TEST(test_a_look_without_a_frame_ends_before_a_fifth_of_a_second);
     RUN_TEST(test_a_camera_too_slow_for_looks_leaves_the_fallback);

@@ -85,11 +85,13 @@ static void doubt(look_t *look, decision_t *decision)
     decision_forget(decision);
 }
 
-static bool looks_like_lamps(const decision_t *decision)
+/* Water that has the lamps' hue by itself is not meant. */
+static bool looks_like_lamps(const look_t *look, const decision_t *decision)
 {
     return decision->background.meaningful &&
            hue_distance(decision->background.hue, decision->steady.shown) <
-               OWN_HUE;
+               OWN_HUE &&
+           !agree(&look->dark, &look->lit);
 }
 
 /* A look without a frame: the camera is too slow.  By day that does no harm. */
@@ -110,11 +112,11 @@ static void lit_frame(look_t *look, decision_t *decision,
                       const dock_settings_t *settings, bool follows,
                       uint32_t now_ms)
 {
-    const bool own = follows && looks_like_lamps(decision);
+    const bool first = !look->lit.known;
     look->lit = seen_in(decision);
-    if (look->unlit.known && !agree(&look->unlit, &look->lit))
+    const bool own = follows && looks_like_lamps(look, decision);
+    if (first && look->dark.known && !agree(&look->dark, &look->lit))
         doubt(look, decision);
-    look->unlit.known = false;
     if (look->failed)
         after_failure(look, decision, settings, own, now_ms);
     const bool taken = (look->clear || !follows) &&
@@ -128,8 +130,8 @@ static void lit_frame(look_t *look, decision_t *decision,
 static void dark_frame(look_t *look, decision_t *decision,
                        const dock_settings_t *settings, uint32_t now_ms)
 {
-    const look_seen_t dark = seen_in(decision);
-    if (agree(&dark, &look->lit))
+    look->dark = seen_in(decision);
+    if (agree(&look->dark, &look->lit))
         look->clear = true;
     else
         doubt(look, decision);
@@ -147,8 +149,8 @@ void look_frame(look_t *look, decision_t *decision,
     if (look->state == LOOK_UNLIT || !decision->decided) {
         decision_take(decision, settings->window_ms, now_ms);
         look->plain_ms = now_ms;
-        look->unlit = seen_in(decision);
-        look->unlit.known = look->state == LOOK_UNLIT;
+        look->dark = seen_in(decision);
+        look->dark.known = look->state == LOOK_UNLIT;
         return;
     }
     /* Else the lamps went out or on while it was exposed. */
@@ -157,7 +159,7 @@ void look_frame(look_t *look, decision_t *decision,
         dark_frame(look, decision, settings, now_ms);
     else if (whole)
         lit_frame(look, decision, settings, follows, now_ms);
-    else if (look->clear && !look->unlit.known)
+    else if (look->clear && look->lit.known)
         decision_take(decision, settings->window_ms, now_ms);
     /* Right after a frame, or that frame would be lost to the look. */
     if (look->state == LOOK_LIT && now_ms - look->since_ms >= look->pause_ms)

@@ -41,7 +41,7 @@ typedef struct {
     bool due;          /* the lamps go out at the next turn */
     bool failed;       /* the last look ended without its frame */
     bool clear;        /* frames in the lamps' light decide too */
-    look_seen_t unlit; /* the last frame of LOOK_UNLIT, until one is lit */
+    look_seen_t dark;  /* the last frame without the lamps' light */
     look_seen_t lit;   /* the last frame in the lamps' light */
     uint32_t plain_ms; /* when one last looked otherwise than the lamps, and
                           like the water before */

@@ -10,8 +10,9 @@ import chromadock
 from chromadock.evaluate.version import _files
 
 ROOT = Path(chromadock.__file__).parent
-NO_ROWS = ("evaluate", "output", "sources")
-"""Left out on purpose: what keeps, draws or writes rows, and what reads pictures unchanged."""
+NO_ROWS = ("controls", "evaluate", "output", "sources")
+"""Left out on purpose: what keeps, draws or writes rows, what reads pictures unchanged, and what
+sets a live camera."""
 LOADED = """
 import sys
 import chromadock.evaluate.work

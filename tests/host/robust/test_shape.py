@@ -129,3 +129,14 @@ def test_the_farthest_views_have_markers_in_cells_that_do_not_touch() -> None:
 def test_a_camera_too_coarse_for_the_dock_is_no_error() -> None:
     model = ShapeModel.learn(RECTANGLE, CameraModel.nominal(64, 64))
     assert np.isfinite(model.covariance).all()
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_dock_of_which_hardly_a_view_is_whole_has_a_shape_all_the_same() -> None:
+    """Two markers a few millimetres apart are told from each other at arm's length alone."""
+    points = DockGeometry.default().points.copy()
+    points[0, 1] = points[2, 1] + 0.006
+    model = ShapeModel.learn(points, CAMERA)
+    assert np.isfinite(model.mean).all()
+    for covariance in model.covariance:
+        assert np.linalg.eigvalsh(covariance)[0] > 0

@@ -36,6 +36,11 @@ MISFIT_DECADES = 8.0
 """Evidence of the search's from which on a set of peaks that is no rigid dock deserves a word: no
 photograph without a dock has as much."""
 
+MISFIT_ERRORS = 2.0
+"""Standard errors of a place, root mean square, beyond which markers do not fit: chi-square 16 with
+the two degrees of freedom that four markers leave, one in 3,000.  What fits better was not taken
+for another reason, and neither the dock's file nor the calibration would mend it."""
+
 MAX_CHOICES = 3
 """Places of each of four markers that are tried in every combination; of more markers two."""
 
@@ -135,7 +140,7 @@ class Measure:
         # So many places to choose from are so many chances for clutter.
         evidence = placed.log_density + candidate.looks - float(np.log(len(xy)))
         if evidence < LEAST_EVIDENCE:
-            self._note(candidate.evidence, poses[0].reprojection_px)
+            self._note(candidate.evidence, poses[0].reprojection_px, sigma[k])
             return None
         poses, weights, sighting = _again(sighting, poses, placed)
         if self._too_far(poses):
@@ -176,10 +181,12 @@ class Measure:
         finely = doubt_over_tilts(sighting, poses[0], self.prior)
         return roughly if finely is None else finely
 
-    def _note(self, evidence: float, error_px: float) -> None:
-        """What stood like a dock by the search's natural log of evidence, but does not fit."""
+    def _note(self, evidence: float, error_px: float, sigma_px: NDArray[np.float64]) -> None:
+        """What stood like a dock by the search's natural log of evidence, but is no rigid dock: its
+        root mean square error is beyond what those of its places, ``sigma_px`` (n,), explain."""
         decades = evidence / float(np.log(10))
-        if decades >= MISFIT_DECADES:
+        known_px = float(np.sqrt(np.mean(sigma_px**2)))
+        if decades >= MISFIT_DECADES and error_px > MISFIT_ERRORS * known_px:
             self.misfits.append(Misfit(decades, error_px))
 
     def _partly(

@@ -111,8 +111,10 @@ class ShapeModel:
         edges = np.quantile(np.abs(base), np.arange(1, _SPANS) / _SPANS)
         span = np.searchsorted(edges, np.abs(base)) * FACETS + facet
         window = Window.of(base)
-        parts = [shape[span == s] for s in range(_SPANS * FACETS)]
-        share = np.array([len(part) for part in parts]).reshape(_SPANS, FACETS)
+        share = np.bincount(span, minlength=_SPANS * FACETS).reshape(_SPANS, FACETS)
+        parts = [_of_class(shape, span, s) for s in range(_SPANS * FACETS)]
+        with np.errstate(divide="ignore"):  # a facet that is never seen
+            log_share = np.log(share / share.sum(axis=1, keepdims=True))
         return cls(
             order=order,
             along=placed_along(points)[list(order)],
@@ -120,7 +122,7 @@ class ShapeModel:
             side=Window.of(side),
             roll_rad=float(np.angle(base / window.direction).std()),
             edges=edges,
-            log_share=np.log(share / share.sum(axis=1, keepdims=True)).ravel(),
+            log_share=log_share.ravel(),
             mean=np.array([part.mean(axis=0) for part in parts]),
             covariance=np.array([np.cov(part.T) for part in parts]),
         )
@@ -212,6 +214,14 @@ def _views(points: Real, camera: CameraModel) -> tuple[Complex, NDArray[np.intp]
     whole = ((places > low) & (places < high)).all(axis=(1, 2))
     z = focal_px(camera) * (places[whole] @ np.array([1, 1j]))
     return np.asarray(z), _facets(R[in_view][whole], centres[in_view][whole])
+
+
+def _of_class(shape: Real, span: NDArray[np.intp], which: int) -> Real:
+    """Shapes (N, 2n-4) of a span and facet, or where these are too few for a covariance, as of a
+    dock that is seen whole from near alone, of the span, or of all."""
+    least = shape.shape[1] + 2
+    choices = (shape[span == which], shape[span // FACETS == which // FACETS])
+    return next((part for part in choices if len(part) >= least), shape)
 
 
 def _facets(R: Real, centres: Real) -> NDArray[np.intp]:

@@ -132,7 +132,7 @@ def test_the_page_of_a_run_is_answered_over_http(camera: str, tmp_path: Path) ->
     whole = McapBag(tmp_path / "dive.mcap")
     assert whole.cut_short is None and len(list(whole.messages(RECORD))) >= found["frames"]
     with av.open(str(tmp_path / "seen.mp4")) as video:
-        assert sum(1 for _ in video.decode(video=0)) > found["frames"]
+        assert sum(1 for _ in video.decode(video=0)) >= found["frames"]
 
 
 def test_what_blueos_asks_for_is_answered_as_its_helper_reads_it(

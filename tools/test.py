@@ -34,7 +34,8 @@ def unity() -> Outcome:
 def pytest() -> Outcome:
     """Run the host's tests and the comparisons of C, Python, OpenCV and Xtensa."""
     report = REPORTS / "pytest.xml"
-    workers = ["-n", "2", "--dist", "worksteal"]
+    # One more than CI has processors: many tests wait for a process or a clock of their own.
+    workers = ["-n", "3", "--dist", "worksteal"]
     return run_suite(
         [sys.executable, "-m", "pytest", "-q", *workers, f"--junitxml={report}"], report
     )

@@ -105,12 +105,12 @@ def test_an_interval_is_set_and_told(rig: Rig) -> None:
 def test_a_reboot_or_reset_of_every_system_is_not_for_the_dock(
     rig: Rig, number: int, value: float
 ) -> None:
-    rig.dock.set_parameter("LED_LIMIT", 99)
+    rig.dock.set_parameter("WINDOW_MS", 900)  # which a reset would set to its default
     before = rig.dock.status().time_boot_ms
     order = command_long(number, value)
     order.target_system = order.target_component = 0
     rig.send(order)
-    assert rig.dock.parameter("LED_LIMIT") == 99
+    assert rig.dock.parameter("WINDOW_MS") == 900
     assert rig.dock.status().time_boot_ms >= before
 
 

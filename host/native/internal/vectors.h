@@ -2,7 +2,8 @@
 #ifndef VECTORS_H
 #define VECTORS_H
 
-#include <stddef.h>
+/* Of the C library, which says there that it is glibc. */
+#include <stdint.h>
 
 /* Before a function: it is compiled twice, for any processor of the kind and
  * for one with vectors of eight floats, and the C library chooses once.  Both

@@ -82,8 +82,8 @@ class Truth:
         if status.led_mode != 0:
             self.wrong.append(f"{now} ms: LED mode {status.led_mode}")
         means = {self._mean(frames, count) for count in self._window(now, frames)}
-        # The frame in which the lamps are first lit is not decided on: until it has left the window,
-        # the mean is of one decision fewer than frames, and is not checked.
+        # The frame in which the lamps are first lit is not decided on: until it has left the
+        # window, the mean is of one decision fewer than frames, and is not checked.
         if now > _STARTED_MS and status.marker_hue not in means:
             self.wrong.append(f"{now} ms: mean {status.marker_hue}, not of {sorted(means)}")
         if duties != _duties(status.marker_hue):

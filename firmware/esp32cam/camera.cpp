@@ -216,9 +216,9 @@ void Camera::look_after_sensor()
     values = sensor_read(sensor);
     if (settings.lock == 0 || !sensor_takes_commands(sensor))
         return;
-    if (!locked || values.exposure != lock_at.exposure ||
-        values.gain != lock_at.gain || sensor->status.aec != 0 ||
-        sensor->status.agc != 0)
+    if ((!locked && proof != LOCK_REFUTED) ||
+        values.exposure != lock_at.exposure || values.gain != lock_at.gain ||
+        sensor->status.aec != 0 || sensor->status.agc != 0)
         lock();
 }
 
@@ -254,7 +254,7 @@ void Camera::give_back()
 bool Camera::may_rest(const camera_order_t &order) const
 {
     return state == RUNNING && locked && order.serial == serial &&
-           order.rest_ms > 0 && skip == 0 && sensor_can_rest(sensor) &&
+           order.rest_ms > 0 && skip == 0 && sensor_takes_commands(sensor) &&
            clock_ms() - delivered_ms < order.rest_ms;
 }
 

@@ -15,12 +15,6 @@ enum {
     WORKING_MHZ = 240,
 };
 
-bool sensor_can_rest(const sensor_t *sensor)
-{
-    const uint16_t pid = sensor->id.PID;
-    return pid == OV2640_PID || pid == OV3660_PID || pid == OV5640_PID;
-}
-
 bool sensor_rest(sensor_t *sensor, bool rest)
 {
     const bool narrow = sensor->id.PID == OV2640_PID;

@@ -5,12 +5,10 @@
 
 #include <esp_camera.h>
 
-/* True for a sensor whose standby is known. */
-bool sensor_can_rest(const sensor_t *sensor);
-
-/* Standby by a register, in which by the data sheet all others keep what they
- * hold, exposure and gain included; the power-down pin may cut the sensor's
- * supply, by the board.  False where it does not answer. */
+/* Standby of a sensor that takes commands (sensor_lock.h), by a register, in
+ * which by the data sheet all others keep what they hold, exposure and gain
+ * included; the power-down pin may cut the sensor's supply, by the board. False
+ * where it does not answer. */
 bool sensor_rest(sensor_t *sensor, bool rest);
 
 /* 80 or 240 MHz.  While it changes, for a fraction of a millisecond, LEDs and

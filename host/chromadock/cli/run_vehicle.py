@@ -15,6 +15,7 @@ from chromadock.cli.exit_status import Terminated
 from chromadock.cli.report import Report
 from chromadock.errors import ChromadockError
 from chromadock.output import ResultOutput, Surroundings, open_output
+from chromadock.output.addresses import check_output
 from chromadock.output.page.output import PageOutput
 from chromadock.output.run_setup import RunSetup
 from chromadock.sources import open_source
@@ -52,6 +53,8 @@ def run_once(
         Where the file, the camera or an output is at fault.
     """
     settings = read_vehicle(vehicle, changes)
+    for text in outputs_of(settings):
+        check_output(text)  # before any is opened: a slip in one would leave a recording each try
     camera, dock = camera_of(settings), dock_of(settings)
     setup = RunSetup(settings, camera)
     for output in more:
@@ -97,12 +100,14 @@ def run_with_retries(
         try:
             while True:
                 seen = _version(vehicle)
+                begun_s = time.monotonic()
                 try:
                     return run_once(vehicle, changes, outputs, json=json, dry_run=dry_run)
                 except ChromadockError as error:
                     _tell(str(error), outputs, report)
                 changed = _wait(vehicle, seen, wait_s)
-                wait_s = FIRST_RETRY_S if changed else min(2 * wait_s, LONGEST_RETRY_S)
+                went_well = time.monotonic() - begun_s > 2 * LONGEST_RETRY_S
+                wait_s = FIRST_RETRY_S if changed or went_well else min(2 * wait_s, LONGEST_RETRY_S)
         except Terminated:
             return 0
 

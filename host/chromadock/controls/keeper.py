@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 
 from chromadock.back_off import FIRST_RETRY_S, LONGEST_RETRY_S
@@ -25,6 +26,8 @@ class _Session:
         self.tried = threading.Event()
         self.seen = threading.Event()
         self.over = threading.Event()
+        self.seen_s = 0.0
+        """When its first picture came, on the monotonic clock."""
 
 
 class Keeper:
@@ -73,6 +76,8 @@ class Keeper:
 
     def seen(self) -> None:
         """Its first picture came."""
+        if not self._session.seen.is_set():
+            self._session.seen_s = time.monotonic()
         self._session.seen.set()
 
     def lost(self) -> None:
@@ -85,6 +90,8 @@ class Keeper:
         wait_s, away = FIRST_RETRY_S, False
         while not session.over.is_set():
             sending = session.seen.is_set()
+            if sending and self._held.waits(self._wishes):
+                session.over.wait(max(0.0, session.seen_s + SETTLE_S - time.monotonic()))
             try:
                 with self._one_at_a_time, self._open() as controls:
                     lines = apply(controls, self._wishes, self._held, settled=sending)
@@ -104,8 +111,6 @@ class Keeper:
                     self._tell(f"{self._name}: camera controls are set now")
                 return
             session.seen.wait()
-            if self._held.waits(self._wishes):
-                session.over.wait(SETTLE_S)
 
     def _tell_once(self, line: str) -> None:
         if line not in self._told:

@@ -18,10 +18,13 @@ from chromadock.ros.mcap_bag import head
 from chromadock.ros.topics import start_of
 from chromadock.sources.bag_kind import is_mcap
 from chromadock.vehicle.building import camera_of, detector_of, dock_of
-from chromadock.vehicle.keys import VehicleFile
+from chromadock.vehicle.keys import CameraKeys, VehicleFile
 from chromadock.vehicle.reading import read_vehicle, settings_of
 
-_OF_NO_USE = ("outputs.", "camera.source", "camera.delay_s")
+_OF_NO_USE = (
+    "outputs.",
+    *(f"camera.{key}" for key in CameraKeys.model_fields if key != "calibration"),
+)
 """Beginnings of keys that change nothing where frames and their times are recorded ones."""
 
 

@@ -14,7 +14,7 @@ from chromadock.ros_node.calibration import camera_of_info
 from chromadock.ros_node.imu import Attitudes
 from chromadock.ros_node.parameters import NodeSettings
 from chromadock.sources.ros_pictures import picture
-from chromadock.stamps import BACK_S
+from chromadock.track.tracker import RESTART_S
 from chromadock.vehicle.building import camera_of, detector_of, dock_of
 
 
@@ -125,9 +125,10 @@ class Finder:
         """Seconds from the first picture; where stamps go back the track starts anew."""
         if self._start_ns is None:
             self._start_ns = stamp_ns
-        if stamp_ns < self._newest_ns - round(BACK_S * 1e9):
+        if stamp_ns < self._newest_ns - round(RESTART_S * 1e9):
             self._tell(f"{self._topics.image}: stamps went back: the track starts anew")
-        self._newest_ns = stamp_ns
+            self._newest_ns = stamp_ns
+        self._newest_ns = max(self._newest_ns, stamp_ns)
         return (stamp_ns - self._start_ns) / 1e9
 
     def _camera_frame(self, message: Any) -> str:

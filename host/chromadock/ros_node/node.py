@@ -96,11 +96,11 @@ def _run(node: Any, settings: NodeSettings) -> None:
     health = Health(topics.image, log.warning, time.monotonic())
     by = settings.vehicle.camera.calibration or f"CameraInfo on {topics.camera_info}"
     log.info(f"looking for the dock in the pictures on {topics.image}, by {by}")
-    unused = settings.vehicle.camera.source, settings.vehicle.outputs
-    if unused != (CameraKeys().source, OutputKeys()):
+    camera = settings.vehicle.camera.model_copy(update={"calibration": ""})
+    if (camera, settings.vehicle.outputs) != (CameraKeys(), OutputKeys()):
         log.warning(
-            f"{settings.node.vehicle}: camera.source and outputs are not used here: pictures come "
-            "and results go by topics; `chromadock run` uses them"
+            f"{settings.node.vehicle}: camera.source and outputs are not used here, nor the "
+            "camera's settings: pictures come and results go by topics; `chromadock run` uses them"
         )
     with _asked_to_stop() as stop, _spinning(node, inbox):
         while not stop:

@@ -361,6 +361,8 @@ static void test_lamps_that_show_something_else_do_not_go_out(void)
         turn(AGE);
         TEST_ASSERT_FALSE(look_is_on(&dock.look));
     }
+    /* Nor is a look waited for, which would keep the board from resting. */
+    TEST_ASSERT_FALSE(look_waits(&dock.look));
 }
 
 static void run_tests(void)

@@ -97,7 +97,9 @@ def play(peer: Peer, dive: Dive, **more: Any) -> None:
     locked = False
     for k, stamp in enumerate(dive.stamps_ns):
         peer.publish(dive.order(k, **more))
-        came = posed(peer, stamp, WAIT_S if locked else 0.5)
+        # Without a pose nothing tells that a picture was looked at: on a busy computer the next one
+        # would take its place.
+        came = posed(peer, stamp, WAIT_S if locked else 3.0 if k >= dive.locked else 1.0)
         # The first picture may be taken before its CameraInfo, and one may be dropped.
         assert came or (not locked and k <= dive.locked + 2), f"no pose of frame {k}"
         assert not came or k >= dive.locked, f"a pose of frame {k}"

@@ -43,7 +43,9 @@ void look_turn(look_t *look, look_lamps_t lamps, uint32_t now_ms)
 {
     if (look->state == LOOK_UNLIT && lamps.lit)
         go_on(look, LOOK_LIT, now_ms);
-    if (look->state == LOOK_LIT && look->due && lamps.follows)
+    if (!lamps.follows)
+        look->due = false;
+    if (look->state == LOOK_LIT && look->due)
         go_on(look, LOOK_DARK, now_ms);
     if (look->state == LOOK_DARK &&
         (!lamps.follows || now_ms - look->since_ms >= LOOK_LONGEST_MS)) {
@@ -162,6 +164,7 @@ void look_frame(look_t *look, decision_t *decision,
     else if (look->clear && look->lit.known)
         decision_take(decision, settings->window_ms, now_ms);
     /* Right after a frame, or that frame would be lost to the look. */
-    if (look->state == LOOK_LIT && now_ms - look->since_ms >= look->pause_ms)
+    if (follows && look->state == LOOK_LIT &&
+        now_ms - look->since_ms >= look->pause_ms)
         look->due = true;
 }

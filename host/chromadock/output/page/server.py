@@ -93,9 +93,10 @@ class Server:
     def __init__(self, host: str, port: int, status: Status) -> None:
         try:
             self._server = _Server(host, port, status)
-        except OSError as error:
+        except (OSError, UnicodeError) as error:  # of a host that no name can be
+            reason = getattr(error, "strerror", None) or "no such host"
             raise ChromadockError(
-                f"--out http:{host}:{port}: cannot listen there ({error.strerror}): give another"
+                f"--out http:{host}:{port}: cannot listen there ({reason}): give another"
             ) from None
         self._thread = threading.Thread(
             target=self._server.serve_forever, args=(0.1,), name="page", daemon=True

@@ -112,7 +112,7 @@ class Status:
                 "trouble": trouble,
                 "frames": self._frames,
                 "dropped": self._dropped,
-                "rate_hz": self._rate_hz(),
+                "rate_hz": self._rate_hz(now_s),
                 "vehicle": self._vehicle,
             }
         answer["outputs"] = [
@@ -124,8 +124,8 @@ class Status:
             answer["result"] = result_record(newest.frame, newest.detection, newest.age_s)
         return answer
 
-    def _rate_hz(self) -> float | None:
-        """Results a second of late; None with fewer than two."""
-        if len(self._came_s) < 2:
+    def _rate_hz(self, now_s: float) -> float | None:
+        """Results a second of late; None with fewer than two, and where they stopped coming."""
+        if len(self._came_s) < 2 or now_s - self._came_s[-1] > STALE_S:
             return None
         return round((len(self._came_s) - 1) / (self._came_s[-1] - self._came_s[0] + 1e-9), 1)

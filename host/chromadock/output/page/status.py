@@ -114,10 +114,20 @@ class Status:
                 "vehicle": self._vehicle,
             }
         answer["outputs"] = [
-            {"name": name, "trouble": output.trouble()} for name, output in outputs.items()
+            {"name": name, "trouble": _without_name(output.trouble(), name)}
+            for name, output in outputs.items()
         ]
         if newest is not None:
             age_s = None if newest.age_s is None else newest.age_s + now_s - newest.came_s
             answer["age_s"] = None if age_s is None else round(age_s, 3)
             answer["result"] = result_record(newest.frame, newest.detection, newest.age_s)
         return answer
+
+
+def _without_name(trouble: str | None, name: str) -> str | None:
+    """A trouble beside whose name it is shown: messages begin with ``KIND:PLACE``, as the user
+    called the output, or with the place alone."""
+    if trouble is None:
+        return None
+    place = name.partition(":")[2]
+    return trouble.removeprefix(f"{name}: ").removeprefix(f"{place}: ")

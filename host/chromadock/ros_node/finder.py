@@ -46,7 +46,7 @@ class Finder:
     Parameters
     ----------
     settings
-        A file in ``camera.calibration`` goes before any CameraInfo.
+        A file in ``camera.calibration`` takes precedence over any CameraInfo.
     topics
         For messages.
     tell

@@ -30,7 +30,7 @@ hil: setup ## The hardware tests on the simulated dock; on a board: PORT=/dev/tt
 
 soak: setup ## A minute of an RTSP camera, 20 kills of a recording, ten minutes of a simulated dock on a bad line, ten of the closed loop; SOAK_SECONDS=20 for a short run
 	@CHROMADOCK_STREAM_S=$(or $(SOAK_SECONDS),60) $(VENV)/python -m pytest -q -s tests/host/test_streams.py -k behind
-	@CHROMADOCK_KILLS=20 $(VENV)/python -m pytest -q tests/host/test_recording.py -k kill
+	@CHROMADOCK_KILLS=20 $(VENV)/python -m pytest -q tests/host/recording/test_disk.py -k kill
 	@$(VENV)/python tools/soak.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
 	@$(VENV)/python tools/closed_loop.py $(if $(SOAK_SECONDS),--seconds=$(SOAK_SECONDS))
 

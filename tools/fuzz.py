@@ -20,7 +20,8 @@ from step import ROOT
 
 FUZZ = ROOT / "build" / "fuzz"
 PROGRAM = FUZZ / "fuzz_receive"
-SEEDS = ROOT / "tests" / "fuzz" / "corpus"
+HARNESS = ROOT / "tests" / "fuzz"
+SEEDS = HARNESS / "corpus"
 CORE = ROOT / "firmware" / "lib" / "dockcore" / "src"
 MAVLINK = ROOT / "build" / "mavlink" / "c"
 NOTHING_FOUND, FOUND, NOT_BUILT, MISSING = range(4)
@@ -58,8 +59,7 @@ def build() -> str | None:
         others = [file for file in sorted(CORE.glob("*.c")) if file not in pixels]
         failure = compile_c([*pixels, "-c"], "address,undefined", Path(scratch))
         objects = sorted(Path(scratch).glob("*.o"))
-        harness = ROOT / "tests" / "fuzz" / "fuzz_receive.c"
-        program = [harness, *others, *objects, "-o", new]
+        program = [*sorted(HARNESS.glob("*.c")), *others, *objects, "-o", new]
         failure = failure or compile_c(program, "fuzzer,address,undefined", Path(scratch))
         if failure is None:
             new.replace(PROGRAM)

@@ -18,7 +18,9 @@ from chromadock.link.rgb565 import HEIGHT, WIDTH, to_rgb565
 
 FRAMES = 480
 _KEPT_MS = 6000
-_STARTED_MS = method.WINDOW_MS + 1000
+_UNSURE = 2
+"""The dock lights its lamps after its first frame.  Where the second one comes at once, for the
+computer is late, its exposure began before that, and the dock does not decide on it."""
 
 
 def write_frames(folder: Path) -> list[int]:
@@ -81,10 +83,8 @@ class Truth:
             self.wrong.append(f"{now} ms: decided {status.decided_hue}, not {decided}")
         if status.led_mode != 0:
             self.wrong.append(f"{now} ms: LED mode {status.led_mode}")
-        means = {self._mean(frames, count) for count in self._window(now, frames)}
-        # The frame in which the lamps are first lit is not decided on: until it has left the
-        # window, the mean is of one decision fewer than frames, and is not checked.
-        if now > _STARTED_MS and status.marker_hue not in means:
+        means = {m for count in self._window(now, frames) for m in self._means(frames, count)}
+        if status.marker_hue not in means:
             self.wrong.append(f"{now} ms: mean {status.marker_hue}, not of {sorted(means)}")
         if duties != _duties(status.marker_hue):
             self.wrong.append(f"{now} ms: duties {duties} for hue {status.marker_hue}")
@@ -105,11 +105,19 @@ class Truth:
         most = min(frames - surely_out, method.WINDOW_CAPACITY)
         return range(max(1, min(frames - surely_in, most)), most + 1)
 
-    def _mean(self, frames: int, count: int) -> int | None:
-        """Circular mean of the last ``count`` decisions."""
+    def _means(self, frames: int, count: int) -> set[int | None]:
+        """Circular mean of the decisions on the last ``count`` frames.
+
+        Where frame ``_UNSURE`` is one of them there are two means, with it and without: whether it
+        was decided on cannot be told from outside, for reports have no exposure times.
+        """
         x = self._sum(self._cos, frames) - self._sum(self._cos, frames - count)
         y = self._sum(self._sin, frames) - self._sum(self._sin, frames - count)
-        return hue_of_vector(x, y)
+        means = {hue_of_vector(x, y)}
+        if frames - count < _UNSURE <= frames:
+            hue = np.array(self._hues[_UNSURE - 1], np.int32)
+            means.add(hue_of_vector(x - int(hue_cos(hue)), y - int(hue_sin(hue))))
+        return means
 
     def _sum(self, sums: np.ndarray, frames: int) -> int:
         rounds, rest = divmod(frames, len(self._hues))

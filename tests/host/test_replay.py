@@ -179,7 +179,7 @@ def test_an_unfinished_recording_is_replayed_as_far_as_it_goes(
     [
         ("dock.mapping=octal", "--set: dock.mapping is 'octal': it must be one"),
         ("detector.metod=paper", "unknown key detector.metod"),
-        ("method", "--set method: write key=value, e.g. detector.method=paper"),
+        ("method", "--set method: write key=value, e.g. dock.mapping=contrast"),
         ("camera.source=0", "--set camera.source: changes nothing in a replay"),
         ("outputs.record=x", "--set outputs.record: changes nothing in a replay"),
         ("camera.calibration=none.yaml", "none.yaml: cannot read the camera file"),

@@ -27,12 +27,14 @@ def test_fifteen_seconds_on_a_bad_line(tmp_path: Path, record_property: Any) -> 
     assert run.truth.link_faults > 0
 
 
-def reports(hues: list[int], period_ms: int) -> list[SimpleNamespace]:
-    """What a dock tells that decides on ``hues``, by the host's own rolling mean."""
+def reports(hues: list[int], period_ms: int, undecided: int | None = None) -> list[SimpleNamespace]:
+    """What a dock tells that decides on ``hues``, but for the frame of number ``undecided``, by the
+    host's own rolling mean."""
     rolling, statuses = RollingHue(), []
     for number in range(3 * len(hues)):
         hue, now = hues[number % len(hues)], number * period_ms
-        mean = rolling.add(hue, now)
+        if number + 1 != undecided:
+            mean = rolling.add(hue, now)
         duty = ffi.new("uint16_t[3]")
         settings = Settings().to_c()
         lib.led_duties(duty, mean, ffi.addressof(settings, "led"))
@@ -55,10 +57,13 @@ def hues(tmp_path_factory: pytest.TempPathFactory) -> list[int]:
     return write_frames(tmp_path_factory.mktemp("frames"))
 
 
+@pytest.mark.parametrize("undecided", [None, 2])
 @pytest.mark.parametrize("period_ms", [33, REPORT_MS, 100])
-def test_the_truth_accepts_a_dock_that_is_right(hues: list[int], period_ms: int) -> None:
+def test_the_truth_accepts_a_dock_that_is_right(
+    hues: list[int], period_ms: int, undecided: int | None
+) -> None:
     truth = Truth(hues)
-    for status in reports(hues, period_ms):
+    for status in reports(hues, period_ms, undecided):
         truth.take(status)
     assert truth.wrong == []
     assert truth.checked == 3 * len(hues)
@@ -79,17 +84,25 @@ def spoil(status: Any, what: str) -> None:
         status.time_boot_ms = 0
 
 
+@pytest.mark.parametrize("spoilt", [5, 150])
 @pytest.mark.parametrize(
     "what", ["decided_hue", "marker_hue", "duty", "led_mode", "frames", "restart"]
 )
-def test_the_truth_tells_a_dock_that_is_wrong(hues: list[int], what: str) -> None:
+def test_the_truth_tells_a_dock_that_is_wrong(hues: list[int], what: str, spoilt: int) -> None:
     truth = Truth(hues)
     for number, status in enumerate(reports(hues, REPORT_MS)):
-        if number == 150:
+        if number == spoilt:
             spoil(status, what)
         truth.take(status)
     assert len(truth.wrong) >= 1
-    assert f"{150 * REPORT_MS + 3} ms" in truth.wrong[0] or what == "restart"
+    assert f"{spoilt * REPORT_MS + 3} ms" in truth.wrong[0] or what == "restart"
+
+
+def test_a_mean_that_leaves_out_another_frame_is_wrong(hues: list[int]) -> None:
+    truth = Truth(hues)
+    for status in reports(hues, 100, undecided=8):
+        truth.take(status)
+    assert truth.wrong
 
 
 def test_memory_that_grows_is_a_fault() -> None:

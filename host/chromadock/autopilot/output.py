@@ -11,7 +11,6 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any
 
 import serial
@@ -28,6 +27,7 @@ from chromadock.autopilot.settings import AutopilotSettings
 from chromadock.autopilot.transport import Transport
 from chromadock.autopilot.wire import Message
 from chromadock.back_off import FIRST_RETRY_S, LONGEST_RETRY_S
+from chromadock.closable import Closable
 from chromadock.mounting import Mounting, mounting_or_default
 from chromadock.results.detection import Detection
 from chromadock.results.track import Track
@@ -50,7 +50,7 @@ CLOSING_S = 2.0
 """For the thread to end."""
 
 
-class AutopilotOutput:
+class AutopilotOutput(Closable):
     """Tells an autopilot of each frame; a context manager.
 
     Nothing here raises or waits because of a network or a port: what goes wrong is told once and
@@ -185,17 +185,6 @@ class AutopilotOutput:
         self._closing.set()
         self._awake()
         self._thread.join(CLOSING_S)
-
-    def __enter__(self) -> AutopilotOutput:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _say_delay(self) -> None:
         """What ArduPilot's parameters for the delay should be, by this run."""

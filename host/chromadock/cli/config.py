@@ -9,7 +9,9 @@ import typer
 
 config = typer.Typer(help="Write, check and show a vehicle's file.", no_args_is_help=True)
 
-_File = Annotated[Path, typer.Argument(metavar="VEHICLE.toml", show_default=False)]
+_File = Annotated[
+    Path, typer.Argument(metavar="VEHICLE.toml", help="The vehicle's file.", show_default=False)
+]
 
 
 @config.command("init")

@@ -15,6 +15,7 @@ from chromadock.choices import (
     MAPPINGS,
     METHODS,
 )
+from chromadock.cli.vehicle_options import DryRun, JsonLines
 from chromadock.errors import ChromadockError
 
 
@@ -38,12 +39,15 @@ def detect(
     ] = None,
     dock: Annotated[
         Path | None,
-        typer.Option(help="TOML file with the dock's markers.", show_default="the original one"),
+        typer.Option(
+            help="TOML file with the dock's markers.",
+            show_default="the rectangle of the original dock",
+        ),
     ] = None,
     yes: Annotated[
         bool,
         typer.Option(
-            "--yes", help="The dock is as its file says, even if beyond 10 m wide or edge-on."
+            "--yes", help="The dock is as its file says, even if more than 10 m wide or edge-on."
         ),
     ] = False,
     method: Annotated[
@@ -57,7 +61,7 @@ def detect(
         str | None,
         typer.Option(
             metavar='"#RRGGBB"|white|any',
-            help="Of lamps that have a colour of their own, whatever the water is.",
+            help="The lamps' colour, where they have one of their own whatever the water is.",
             show_default="the dock file's, or by the water",
         ),
     ] = None,
@@ -75,7 +79,7 @@ def detect(
             help="Treat every frame alone: no mean of the colour over time, no track.",
         ),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
+    json: JsonLines = False,
     out: Annotated[
         list[str] | None,
         typer.Option(
@@ -93,10 +97,7 @@ def detect(
             show_default=False,
         ),
     ] = None,
-    dry_run: Annotated[
-        bool,
-        typer.Option("--dry-run", help="Send an autopilot nothing: say what it would understand."),
-    ] = False,
+    dry_run: DryRun = False,
     overlay: Annotated[
         Path | None,
         typer.Option(help="Draw what was seen into a folder or a .mp4.", show_default=False),
@@ -108,7 +109,7 @@ def detect(
         float,
         typer.Option(
             metavar="S",
-            help="From capture to arrival of a camera's or stream's pictures, where it is known.",
+            help="Seconds from capture to arrival of a camera's or stream's pictures, where known.",
         ),
     ] = 0.0,
 ) -> None:

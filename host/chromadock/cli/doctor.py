@@ -7,20 +7,19 @@ from typing import Annotated
 
 import typer
 
+from chromadock.cli.vehicle_options import Changes, changes_of
+
 
 def doctor(
     vehicle: Annotated[
         Path | None,
         typer.Argument(
-            metavar="[VEHICLE.toml]",
+            metavar="VEHICLE.toml",
             help="The vehicle's settings; without them the first camera is looked at.",
             show_default=False,
         ),
     ] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Goes before a key of the file."),
-    ] = None,
+    set_: Changes = None,
     dock: Annotated[
         bool, typer.Option("--dock", help="Ask the dock on the serial line, too.")
     ] = False,
@@ -35,10 +34,9 @@ def doctor(
     """
     from chromadock.cli.exit_status import EXIT_FAULTS
     from chromadock.doctor.examination import examined
-    from chromadock.toml_file import change
     from chromadock.vehicle.reading import read_vehicle, settings_of
 
-    changes = dict(change(text, "camera.source=1") for text in set_ or [])
+    changes = changes_of(set_)
     settings = settings_of(changes) if vehicle is None else read_vehicle(vehicle, changes)
     faults = 0
     for finding in examined(settings, port, dock or port is not None):

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from chromadock.cli.cluster_options import Scheduler, Workers, check_cluster
+from chromadock.cli.vehicle_options import Changes, changes_of
 from chromadock.errors import ChromadockError
 
 
@@ -20,15 +21,7 @@ def replay(
             show_default=False,
         ),
     ],
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Goes before a key of the recorded settings, e.g. detector.method=paper; may be "
-            "repeated.",
-        ),
-    ] = None,
+    set_: Changes = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -51,10 +44,9 @@ def replay(
     """
     from chromadock.replay.recorded import check_changes
     from chromadock.replay.recordings import recordings as found_in
-    from chromadock.toml_file import change
 
     check_cluster(scheduler, workers)
-    changes = dict(change(text, "detector.method=paper") for text in set_ or [])
+    changes = changes_of(set_)
     check_changes(changes)
     paths = found_in(recordings)
     if len(recordings) > 1 or recordings[0].is_dir():

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from chromadock.cli.vehicle_options import Changes, DryRun, JsonLines, changes_of
+
 
 def run(
     vehicle: Annotated[
@@ -17,18 +19,8 @@ def run(
             show_default=False,
         ),
     ],
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Goes before a key of the file, e.g. camera.source=1; may be repeated.",
-        ),
-    ] = None,
-    dry_run: Annotated[
-        bool,
-        typer.Option("--dry-run", help="Send an autopilot nothing: say what it would understand."),
-    ] = False,
+    set_: Changes = None,
+    dry_run: DryRun = False,
     out: Annotated[
         list[str] | None,
         typer.Option(
@@ -45,12 +37,12 @@ def run(
             "too, and try again instead of ending; a file that is missing is written.",
         ),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object a frame.")] = False,
+    json: JsonLines = False,
     record: Annotated[
         Path | None,
         typer.Option(
             metavar="DIVE.mcap",
-            help="Goes before outputs.record: record frames, results and settings.",
+            help="Record frames, results and settings there; takes precedence over outputs.record.",
             show_default=False,
         ),
     ] = None,
@@ -61,9 +53,8 @@ def run(
     """
     from chromadock.cli.run_vehicle import run_once, run_with_retries
     from chromadock.output.addresses import check_output
-    from chromadock.toml_file import change
 
-    changes = dict(change(text, "camera.source=1") for text in set_ or [])
+    changes = changes_of(set_)
     if record is not None:
         changes["outputs.record"] = str(record)
     for text in out or []:

@@ -16,7 +16,7 @@ from chromadock.text import plural
 _SECONDS = 10.0
 _MOST_FRAMES = 1_000_000
 _MOST_FPS = 240.0
-_MOST_JOBS = 256
+_MOST_WORKERS = 256
 
 
 def simulate(
@@ -32,9 +32,11 @@ def simulate(
         Path, typer.Option(help="A new folder for pictures, or a .mp4.", show_default=False)
     ],
     frames: Annotated[
-        int | None, typer.Option(help="How many.", show_default="--seconds times --fps")
+        int | None, typer.Option(help="Number of frames.", show_default="--seconds times --fps")
     ] = None,
-    seconds: Annotated[float | None, typer.Option(help="How long.", show_default="10")] = None,
+    seconds: Annotated[
+        float | None, typer.Option(help="Length of the simulated time.", show_default="10")
+    ] = None,
     fps: Annotated[float, typer.Option(help="Frames a second.")] = 15.0,
     seed: Annotated[
         int | None,
@@ -55,8 +57,14 @@ def simulate(
             help="A key of the scene, e.g. vehicle.distance_m=5; may be repeated.",
         ),
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(help="Processes.", show_default="one a processor")
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers",
+            "--jobs",
+            help="Processes of this machine; --jobs is its older name.",
+            show_default="one a core",
+        ),
     ] = None,
 ) -> None:
     """Simulate a dock and a vehicle in SCENE, and write what the vehicle sees.
@@ -81,7 +89,7 @@ def simulate(
             "run `make setup` in the project's folder"
         ) from None
     count = _count(frames, seconds, fps)
-    processes = _processes(jobs)
+    processes = _processes(workers)
     changes = dict(change(text, "vehicle.distance_m=5") for text in set_ or [])
     if seed is not None:
         changes["seed"] = seed
@@ -118,9 +126,9 @@ def _count(frames: int | None, seconds: float | None, fps: float) -> int:
     return round(wanted)
 
 
-def _processes(jobs: int | None) -> int:
-    if jobs is None:
+def _processes(workers: int | None) -> int:
+    if workers is None:
         return processors()
-    if not 1 <= jobs <= _MOST_JOBS:
-        raise ChromadockError(f"--jobs is {jobs}: give 1 to {_MOST_JOBS} processes")
-    return jobs
+    if not 1 <= workers <= _MOST_WORKERS:
+        raise ChromadockError(f"--workers is {workers}: give 1 to {_MOST_WORKERS} processes")
+    return workers

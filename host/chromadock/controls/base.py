@@ -8,8 +8,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import TracebackType
 
+from chromadock.closable import Closable
 from chromadock.errors import ChromadockError
 
 
@@ -47,7 +47,7 @@ Table = Mapping[int, Control]
 """The controls of a camera by their numbers in V4L2."""
 
 
-class Controls(ABC):
+class Controls(Closable, ABC):
     """The controls of one camera, for a short while; use it as a context manager.
 
     ``keeps``: who keeps the values, as messages name it.
@@ -76,17 +76,3 @@ class Controls(ABC):
         ControlsAwayError
             As in ``read``.
         """
-
-    def close(self) -> None:  # noqa: B027 - not every way holds something open
-        """Let go of the camera."""
-
-    def __enter__(self) -> Controls:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

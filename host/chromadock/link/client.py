@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from types import TracebackType
 
 from chromadock import dialect, method
+from chromadock.closable import Closable
 from chromadock.errors import ChromadockError
 from chromadock.link import parameters, pictures
 from chromadock.link.commands import ask_for_message, command, command_long
@@ -33,7 +33,7 @@ class Version:
     uid: int
 
 
-class DockClient:
+class DockClient(Closable):
     """Talks to the dock behind ``connection``, which it owns from now on.
 
     Parameters
@@ -184,17 +184,6 @@ class DockClient:
     def close(self) -> None:
         """Let go of the port."""
         self.connection.close()
-
-    def __enter__(self) -> DockClient:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
 
 def _greet(messenger: Messenger, timeout_s: float) -> Version:

@@ -10,11 +10,11 @@ import select
 import threading
 import time
 from pathlib import Path
-from types import TracebackType
 from typing import Any, TextIO
 
 import serial
 
+from chromadock.closable import Closable
 from chromadock.errors import ChromadockError
 from chromadock.output.base import cannot_write
 from chromadock.text import one_line
@@ -26,7 +26,7 @@ _CHUNK = 65536
 _POLL_S = 0.005
 
 
-class Connection:
+class Connection(Closable):
     """Bytes to and from a port; a context manager.
 
     Parameters
@@ -100,17 +100,6 @@ class Connection:
         if self._log is not None:
             self._log.close()
             self._log = None
-
-    def __enter__(self) -> Connection:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _read(self, timeout_s: float) -> bytes:
         try:

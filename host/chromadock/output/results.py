@@ -5,17 +5,15 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import asdict
-from types import TracebackType
-from typing import Any, TypeVar
+from typing import Any
 
+from chromadock.closable import Closable
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame
 from chromadock.track.attitude import Attitude
 
-_Self = TypeVar("_Self", bound="ResultOutput")
 
-
-class ResultOutput(ABC):
+class ResultOutput(Closable, ABC):
     """Somewhere results go while the detection runs: a file, the network, an autopilot.
 
     A context manager that closes at the end.
@@ -54,23 +52,9 @@ class ResultOutput(ABC):
         all is well.  Called from any thread."""
         return None
 
-    def beside(self, outputs: Mapping[str, ResultOutput]) -> None:  # noqa: B027 - few care
+    def beside(self, outputs: Mapping[str, ResultOutput]) -> None:
         """Told once, before the first result: all outputs of the run by what the user called
         them, this one too."""
-
-    def close(self) -> None:  # noqa: B027 - some outputs hold nothing open
-        """Finish and let go of what is open."""
-
-    def __enter__(self: _Self) -> _Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
 
 def result_record(frame: Frame, detection: Detection, age_s: float | None) -> dict[str, Any]:

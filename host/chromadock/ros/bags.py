@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from chromadock.closable import Closable
+
 
 @dataclass(frozen=True)
 class Topic:
@@ -18,7 +20,7 @@ class Topic:
     count: int | None
 
 
-class Bag(ABC):
+class Bag(Closable, ABC):
     """An open file of messages; a context manager.
 
     Attributes
@@ -41,9 +43,3 @@ class Bag(ABC):
     @abstractmethod
     def close(self) -> None:
         """Let go of the file."""
-
-    def __enter__(self) -> Bag:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from chromadock.results.detection import MOST_CLIPPED, Detection
 from chromadock.ros.fields import Fields
 from chromadock.ros.header import CAMERA_FRAME, header
@@ -13,6 +15,28 @@ MOST_AGE_S = 0.5
 """A result that is out later helps no one to steer."""
 
 
+class Summary(NamedTuple):
+    """The level and the message of a ``diagnostic_msgs/DiagnosticStatus``."""
+
+    level: int
+    message: str
+
+
+def summary(detection: Detection | None, age_s: float | None, complaint: str | None) -> Summary:
+    """How well it goes, in a few words; parameters as those of ``diagnostics``.
+
+    The level is ERROR with a complaint, WARN where results come late or lamps are overexposed, and
+    OK otherwise: a dock out of sight is no fault.
+    """
+    late = age_s is not None and age_s > MOST_AGE_S
+    clipped = None if detection is None else detection.clipped
+    bright = clipped is not None and clipped > MOST_CLIPPED
+    frame = None if detection is None else detection.state
+    words = [complaint or _track_state(detection) or frame or "no pictures yet"]
+    words += ["results are late"] * late + ["lamps are overexposed"] * bright
+    return Summary(ERROR if complaint else WARN if late or bright else OK, ", ".join(words))
+
+
 def diagnostics(
     detection: Detection | None,
     age_s: float | None,
@@ -22,7 +46,8 @@ def diagnostics(
     rate_hz: float | None = None,
     complaint: str | None = None,
 ) -> Fields:
-    """``diagnostic_msgs/DiagnosticArray``: state, track, latency, rate, dropped, clipped.
+    """``diagnostic_msgs/DiagnosticArray``: ``summary``, and as values state, track, latency, rate,
+    dropped, clipped.
 
     Parameters
     ----------
@@ -31,22 +56,13 @@ def diagnostics(
     dropped : frames of the source so far that no result was made of.
     rate_hz : results a second; None of a recording.
     complaint : why no results can be made, in one line; None while they can.
-
-    The level is ERROR with a complaint, WARN where results come late or lamps are overexposed, and
-    OK otherwise: a dock out of sight is no fault.
     """
-    late = age_s is not None and age_s > MOST_AGE_S
+    level, message = summary(detection, age_s, complaint)
     clipped = None if detection is None else detection.clipped
-    bright = clipped is not None and clipped > MOST_CLIPPED
-    frame = None if detection is None else detection.state
-    track = None if detection is None or detection.track is None else detection.track.state
     total_ms = None if detection is None else detection.timing_ms.get("total")
-    level = ERROR if complaint else WARN if late or bright else OK
-    words = [complaint or track or frame or "no pictures yet"]
-    words += ["results are late"] * late + ["lamps are overexposed"] * bright
     values = {
-        "state": frame,
-        "track": track,
+        "state": None if detection is None else detection.state,
+        "track": _track_state(detection),
         "latency_ms": None if age_s is None else f"{age_s * 1000:.1f}",
         "processing_ms": None if total_ms is None else f"{total_ms:.1f}",
         "rate_hz": None if rate_hz is None else f"{rate_hz:.1f}",
@@ -59,7 +75,7 @@ def diagnostics(
             {
                 "level": level,
                 "name": NAME,
-                "message": ", ".join(words),
+                "message": message,
                 "hardware_id": "chromadock",
                 "values": [
                     {"key": key, "value": value}
@@ -69,3 +85,7 @@ def diagnostics(
             }
         ],
     }
+
+
+def _track_state(detection: Detection | None) -> str | None:
+    return None if detection is None or detection.track is None else detection.track.state

@@ -1,4 +1,4 @@
-"""The camera that a CameraInfo message describes."""
+"""The camera that CameraInfo messages describe."""
 
 from __future__ import annotations
 
@@ -8,9 +8,28 @@ from chromadock.camera import CameraModel
 from chromadock.camera_file import calibration_of
 from chromadock.errors import ChromadockError
 
+Description = dict[str, Any]
+"""What a CameraInfo says of the camera, by the names of a calibration file's keys."""
 
-def camera_of_info(message: Any, topic: str) -> CameraModel:
-    """The camera of a ``sensor_msgs/CameraInfo``, for the pictures that it comes with.
+
+def description_of(message: Any) -> Description:
+    """What a ``sensor_msgs/CameraInfo`` says of the camera: all but the header, which is another
+    one for each picture."""
+    roi = message.roi
+    return {
+        "width": message.width,
+        "height": message.height,
+        "distortion_model": message.distortion_model,
+        "d": [float(number) for number in message.d],
+        "k": [float(number) for number in message.k],
+        "binning_x": message.binning_x,
+        "binning_y": message.binning_y,
+        "roi": {name: getattr(roi, name) for name in ("x_offset", "y_offset", "width", "height")},
+    }
+
+
+def described_camera(description: Description, topic: str) -> CameraModel:
+    """The camera, for the pictures that the ``sensor_msgs/CameraInfo`` comes with.
 
     Region of interest and binning are applied; an empty ``distortion_model`` is a pinhole.
 
@@ -24,23 +43,11 @@ def camera_of_info(message: Any, topic: str) -> CameraModel:
         One line where the camera is not calibrated (by sensor_msgs, K[0] is 0 then), of a lens that
         is not known here, or of numbers that are no camera's.
     """
-    k = [float(number) for number in message.k]
-    if k[0] == 0:
+    if description["k"][0] == 0:
         raise ChromadockError(
             f"{topic}: the camera is not calibrated (its matrix k begins with 0): calibrate it in "
             "water and have its driver load that, or set the parameter camera.calibration"
         )
-    roi = message.roi
-    content = {
-        "width": message.width,
-        "height": message.height,
-        "distortion_model": message.distortion_model,
-        "d": [float(number) for number in message.d],
-        "k": k,
-        "binning_x": message.binning_x,
-        "binning_y": message.binning_y,
-        "roi": {name: getattr(roi, name) for name in ("x_offset", "y_offset", "width", "height")},
-    }
-    read = calibration_of(content, topic)
+    read = calibration_of(description, topic)
     name = topic + read.window
     return CameraModel(read.width, read.height, read.matrix, read.distortion, name, read.lens)

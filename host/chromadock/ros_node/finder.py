@@ -10,7 +10,7 @@ from chromadock.camera import CameraModel
 from chromadock.errors import ChromadockError
 from chromadock.results.detection import Detection
 from chromadock.ros.header import CAMERA_FRAME, FrameIds, stamp_ns_of
-from chromadock.ros_node.calibration import camera_of_info
+from chromadock.ros_node.calibration import Description, described_camera, description_of
 from chromadock.ros_node.imu import Attitudes
 from chromadock.ros_node.parameters import NodeSettings
 from chromadock.sources.ros_pictures import picture
@@ -46,7 +46,7 @@ class Finder:
     Parameters
     ----------
     settings
-        A file in ``camera.calibration`` goes before any CameraInfo.
+        A file in ``camera.calibration`` takes precedence over any CameraInfo.
     topics
         For messages.
     tell
@@ -70,6 +70,7 @@ class Finder:
         # Without a camera yet, to refuse at the start what cannot be looked for.
         self._detector = detector_of(settings.vehicle, camera, self._dock)
         self._camera = camera
+        self._described: Description | None = None
         self._fault: str | None = None
         if camera is None:
             self._fault = (
@@ -81,9 +82,16 @@ class Finder:
         self._newest_ns = 0
 
     def camera_info(self, message: Any) -> None:
-        """Take in a ``sensor_msgs/CameraInfo``; a wrong one stops the results."""
+        """Take in a ``sensor_msgs/CameraInfo``; a wrong one stops the results.
+
+        One comes with each picture, and seldom says anything new.
+        """
+        description = description_of(message)
+        if description == self._described:
+            return
+        self._described = description
         try:
-            camera = camera_of_info(message, self._topics.camera_info)
+            camera = described_camera(description, self._topics.camera_info)
         except ChromadockError as error:
             self._camera, self._fault = None, str(error)
             return

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 
-from chromadock.ros.diagnostics import diagnostics
+from chromadock.rate import Rate
+from chromadock.ros.diagnostics import diagnostics, summary
 from chromadock.ros.fields import Fields
 from chromadock.ros_node.finder import Seen
 
@@ -18,9 +18,6 @@ SILENCE_S = 2.0
 GRACE_S = 1.0
 """A complaint is logged when it has held for so long: at a start, or at a change of the camera's
 mode, a picture may come before its CameraInfo."""
-
-_RATE_PICTURES = 30
-"""So many results tell how many there are a second."""
 
 
 class Health:
@@ -39,7 +36,7 @@ class Health:
         self._silent = f"no pictures on {topic}: start the camera's driver, or remap image to it"
         self._log = log
         self._picture_s = now_s
-        self._results_s: deque[float] = deque(maxlen=_RATE_PICTURES)
+        self._rate = Rate(SILENCE_S)
         self._seen: Seen | None = None
         self._age_s: float | None = None
         self._complaint: str | None = None
@@ -51,7 +48,7 @@ class Health:
         """Take in what came of a picture, ``age_s`` after it was taken."""
         self._seen, self._age_s, self._picture_s = seen, age_s, now_s
         if seen.complaint is None:
-            self._results_s.append(now_s)
+            self._rate.came(now_s)
 
     def told(self, dropped: int, stamp_ns: int, now_s: float) -> Fields | None:
         """The fields of ``diagnostic_msgs/DiagnosticArray`` where it is time to tell, or None.
@@ -65,29 +62,16 @@ class Health:
         seen = None if silent else self._seen
         complaint = self._silent if silent else seen.complaint if seen else None
         self._log_change(complaint, now_s)
-        fields = diagnostics(
-            seen.detection if seen else None,
-            self._age_s if seen and seen.detection else None,
-            dropped,
-            stamp_ns,
-            frame_id="",
-            rate_hz=self._rate_hz(now_s),
-            complaint=complaint,
-        )
-        message = fields["status"][0]["message"]
+        detection = seen.detection if seen else None
+        age_s = None if detection is None else self._age_s
+        message = summary(detection, age_s, complaint).message
         if self._told is not None:
             before, told_s = self._told
             if message == before and now_s - told_s < PERIOD_S:
                 return None
         self._told = message, now_s
-        return fields
-
-    def _rate_hz(self, now_s: float) -> float:
-        """Results a second, by the newest ones; those of a time that is over do not count."""
-        times = self._results_s
-        if len(times) < 2 or now_s - times[-1] > SILENCE_S:
-            return 0.0
-        return (len(times) - 1) / max(times[-1] - times[0], 1e-9)
+        rate_hz = self._rate.hz(now_s) or 0.0
+        return diagnostics(detection, age_s, dropped, stamp_ns, "", rate_hz, complaint)
 
     def _log_change(self, complaint: str | None, now_s: float) -> None:
         if complaint != self._complaint:

@@ -60,7 +60,7 @@ def rendered(
             yield waiting.popleft().result()
     except BrokenProcessPool:
         raise ChromadockError(
-            "a process that renders frames died, out of memory perhaps: give fewer --jobs"
+            "a process that renders frames died, out of memory perhaps: give fewer --workers"
         ) from None
     finally:
         pool.shutdown(cancel_futures=True)

@@ -6,12 +6,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.choices import DEFAULT_FPS
+from chromadock.closable import Closable
 from chromadock.track.attitude import Attitude
 
 OnFault = Callable[[str], None]
@@ -36,7 +36,7 @@ class Frame:
     attitude: Attitude | None = None
 
 
-class Source(ABC):
+class Source(Closable, ABC):
     """An iterable of ``Frame``; use it as a context manager or call ``close``.
 
     Attributes
@@ -79,17 +79,3 @@ class Source(ABC):
     def now(self) -> float | None:
         """This moment on the clock of a live source's ``Frame.time_s``; None of a recording."""
         return None
-
-    def close(self) -> None:  # noqa: B027 - most sources hold nothing open
-        """Let go of the camera or file."""
-
-    def __enter__(self) -> Source:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

@@ -42,7 +42,7 @@ def page() -> str:
         "",
         "`chromadock config init vehicle.toml` writes it, `config check` says what is wrong in it, "
         "`config show` what holds,\n`chromadock run vehicle.toml` runs it. `--set table.key=value` "
-        "goes before a key of the file. Files that it names are sought\nbeside it.",
+        "takes precedence over a key of the file.\nFiles that it names are sought beside it.",
     ]
     for name, model in tables().items():
         parts += ["", f"## [{name}]", "", _words(model), ""]

@@ -13,6 +13,7 @@ from chromadock.output import Surroundings, open_output
 from chromadock.output.page import server
 from chromadock.output.page.picture import PERIOD_S, Picture
 from chromadock.output.page.status import STALE_S, Status
+from chromadock.output.results import ResultOutput
 from chromadock.output.run_setup import RunSetup
 from chromadock.results.detection import Background, Detection, Marker
 from chromadock.sources import Frame
@@ -47,6 +48,34 @@ def test_what_fails_is_told_until_the_next_run_begins() -> None:
     assert status.trouble(1.0) == "camera 0: does not open"
     status.begin(None)
     assert status.record(1.0)["frames"] == 0 and status.newest is None
+
+
+class Troubled(ResultOutput):
+    def __init__(self, trouble: str | None) -> None:
+        self._trouble = trouble
+
+    def write(self, frame: Frame, detection: Detection, age_s: float | None) -> None:
+        raise AssertionError
+
+    def trouble(self) -> str | None:
+        return self._trouble
+
+
+@pytest.mark.parametrize(
+    ("name", "trouble", "shown"),
+    [
+        ("json:/log", "/log: the disk is full: make room", "the disk is full: make room"),
+        ("udp:eye:9000", "udp:eye:9000: cannot be reached", "cannot be reached"),
+        ("mcap:dive.mcap", "dive-2.mcap: cannot be written", "dive-2.mcap: cannot be written"),
+        ("json:/log", None, None),
+    ],
+)
+def test_the_trouble_of_an_output_does_not_name_it_again(
+    name: str, trouble: str | None, shown: str | None
+) -> None:
+    status = Status()
+    status.beside({name: Troubled(trouble)})
+    assert status.record(1.0)["outputs"] == [{"name": name, "trouble": shown}]
 
 
 def test_however_many_ask_a_picture_is_drawn_five_times_a_second_at_most() -> None:

@@ -57,7 +57,7 @@ def dive(tmp_path_factory: pytest.TempPathFactory) -> Dive:
     from chromadock.cli.simulate import simulate
 
     folder = tmp_path_factory.mktemp("ros") / "frames"
-    simulate("pool", folder, frames=COUNT, set_=["vehicle.distance_m=2"], jobs=1)
+    simulate("pool", folder, frames=COUNT, set_=["vehicle.distance_m=2"], workers=1)
     dive = Dive(folder, CameraModel.from_yaml(folder / "camera.yaml"))
     detector = Detector(dive.camera, DockGeometry.default())
     for k, line in enumerate((folder / "truth.jsonl").read_text().splitlines()):

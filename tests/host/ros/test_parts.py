@@ -21,7 +21,8 @@ from chromadock.errors import ChromadockError
 from chromadock.mounting import Mounting
 from chromadock.ros.fields import Fields
 from chromadock.ros.image import camera_info
-from chromadock.ros_node.calibration import camera_of_info
+from chromadock.ros_node import finder as finding
+from chromadock.ros_node.calibration import described_camera, description_of
 from chromadock.ros_node.finder import Finder, Seen, TopicNames
 from chromadock.ros_node.health import GRACE_S, PERIOD_S, SILENCE_S, Health
 from chromadock.ros_node.imu import Attitudes
@@ -61,6 +62,10 @@ def picture_of(frame: Frame, frame_id: str = "eye", start_s: float = 100.0) -> A
 def info(camera: CameraModel = CAMERA, **changes: Any) -> Any:
     fields: Fields = {**camera_info(camera, 0), **changes}
     return message(fields)
+
+
+def camera_of_info(**changes: Any) -> CameraModel:
+    return described_camera(description_of(info(**changes)), "/camera_info")
 
 
 def finder_of(told: list[str] | None = None, **given: Any) -> Finder:
@@ -123,6 +128,30 @@ def test_a_wrong_camera_info_stops_results_until_it_is_right() -> None:
     assert finder.picture(picture_of(frame), 0).complaint is None
 
 
+def test_a_camera_info_is_looked_at_again_only_where_it_says_something_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    looked_at: list[str] = []
+
+    def described(description: Any, topic: str) -> CameraModel:
+        looked_at.append(description["distortion_model"])
+        return described_camera(description, topic)
+
+    monkeypatch.setattr(finding, "described_camera", described)
+    finder, frame = finder_of(), frames(1)[0]
+    for lens, complaint in (
+        ("plumb_bob", "None"),
+        ("kannala", "kannala is not"),
+        ("plumb_bob", "None"),
+    ):
+        for second in range(3):
+            message = info(distortion_model=lens)
+            message.header.stamp.sec = second
+            finder.camera_info(message)
+            assert complaint in str(finder.picture(picture_of(frame), 0).complaint)
+    assert looked_at == ["plumb_bob", "kannala", "plumb_bob"]
+
+
 def test_a_calibration_file_needs_no_camera_info(tmp_path: Path) -> None:
     (tmp_path / "cam.yaml").write_text(CAMERA_YAML)
     finder = finder_of(**{"camera.calibration": str(tmp_path / "cam.yaml")})
@@ -143,7 +172,7 @@ def test_pictures_without_stamp_or_frame_have_those_that_are_told_once() -> None
 def test_the_camera_is_that_of_region_binning_and_lens() -> None:
     roi = message({"x_offset": 160, "y_offset": 80, "width": 320, "height": 240})
     fisheye = {"distortion_model": "equidistant", "d": [0.1, 0.01, 0.0, 0.0]}
-    camera = camera_of_info(info(roi=roi, binning_x=2, binning_y=2, **fisheye), "/camera_info")
+    camera = camera_of_info(roi=roi, binning_x=2, binning_y=2, **fisheye)
     assert (camera.width, camera.height, camera.lens) == (160, 120, "equidistant")
     # The middle of the binned pixel is that of four: (319.5 - 160 + 0.5) / 2 - 0.5.
     assert camera.matrix[0].tolist() == pytest.approx([256, 0, 79.5])
@@ -165,7 +194,7 @@ def test_a_camera_info_that_is_none_is_refused_in_a_line(
     changes: dict[str, Any], line: str
 ) -> None:
     with pytest.raises(ChromadockError, match=re.escape(line)):
-        camera_of_info(info(**changes), "/camera_info")
+        camera_of_info(**changes)
 
 
 def imu(stamp_s: float, q_xyzw: tuple[float, ...], known: float = 0.0) -> Any:

@@ -35,7 +35,8 @@ def run(tmp_path_factory: pytest.TempPathFactory, camera: str) -> Path:
     """The folder of a usual run, with one process."""
     out = tmp_path_factory.mktemp("run") / "frames"
     subprocess.run(
-        command("pool", "--out", out, "--frames", FRAMES, "--jobs", 1, "--set", camera), check=True
+        command("pool", "--out", out, "--frames", FRAMES, "--workers", 1, "--set", camera),
+        check=True,
     )
     return out
 
@@ -77,7 +78,7 @@ def test_a_camera_that_does_not_compress_leaves_png(tmp_path: Path, capsys) -> N
     (tmp_path / "raw.toml").write_text(text.replace("jpeg_quality = 90", ""))
     raw = f"vehicle_camera.model={tmp_path / 'raw.toml'}"
     done = chromadock(capsys, "simulate", "pool", "--out", tmp_path / "frames", "--frames", 1,
-                      "--jobs", 1, "--set", raw)  # fmt: skip
+                      "--workers", 1, "--set", raw)  # fmt: skip
     assert done.status == 0
     assert cv2.imread(str(tmp_path / "frames" / "000000.png")).shape == (120, 160, 3)
 
@@ -85,7 +86,8 @@ def test_a_camera_that_does_not_compress_leaves_png(tmp_path: Path, capsys) -> N
 def test_any_number_of_processes_makes_the_same_bytes(run: Path, tmp_path: Path, camera) -> None:
     out = tmp_path / "frames"
     subprocess.run(
-        command("pool", "--out", out, "--frames", FRAMES, "--jobs", 2, "--set", camera), check=True
+        command("pool", "--out", out, "--frames", FRAMES, "--jobs", 2, "--set", camera),
+        check=True,
     )
     assert contents(out) == contents(run)
 
@@ -93,7 +95,7 @@ def test_any_number_of_processes_makes_the_same_bytes(run: Path, tmp_path: Path,
 def test_a_video_has_its_truth_and_camera_beside_it(tmp_path: Path, camera: str, capsys) -> None:
     out = tmp_path / "run.mp4"
     done = chromadock(capsys, "simulate", "pool", "--out", out, "--seconds", 0.4, "--fps", 10,
-                      "--jobs", 1, "--set", camera, "--set", "vehicle.distance_m=1",
+                      "--workers", 1, "--set", camera, "--set", "vehicle.distance_m=1",
                       "--seed", 5, "--mapping", "complement")  # fmt: skip
     assert (done.status, done.err) == (0, "")
     assert done.out == f"wrote 4 frames to {out}\n"
@@ -111,7 +113,7 @@ def test_photographs_are_put_behind_the_dock(tmp_path: Path, camera: str, capsys
     pictures.mkdir()
     cv2.imwrite(str(pictures / "teal.png"), np.full((60, 80, 3), (150, 160, 60), np.uint8))
     out = tmp_path / "frames"
-    done = chromadock(capsys, "simulate", "pool", "--out", out, "--frames", 1, "--jobs", 1,
+    done = chromadock(capsys, "simulate", "pool", "--out", out, "--frames", 1, "--workers", 1,
                       "--set", camera, "--background", pictures)  # fmt: skip
     assert done.status == 0
     line = json.loads((out / "truth.jsonl").read_text())
@@ -134,7 +136,7 @@ BAD = {
     ("pool", "--seconds", -1): "--seconds is -1",
     ("pool", "--seconds", "nan"): "--seconds is nan",
     ("pool", "--frames", 3, "--seconds", 1): "give one of them",
-    ("pool", "--jobs", 0): "--jobs is 0",
+    ("pool", "--workers", 0): "--workers is 0",
     ("pool", "--background", "nowhere"): "nowhere: cannot be read",
 }
 
@@ -172,7 +174,7 @@ def test_places_that_cannot_be_written_are_refused(tmp_path: Path, capsys) -> No
 def test_an_empty_folder_may_be_filled(tmp_path: Path, camera: str, capsys) -> None:
     out = tmp_path / "frames"
     out.mkdir()
-    done = chromadock(capsys, "simulate", "pool", "--frames", 1, "--jobs", 1, "--out", out,
+    done = chromadock(capsys, "simulate", "pool", "--frames", 1, "--workers", 1, "--out", out,
                       "--set", camera)  # fmt: skip
     assert done.status == 0
     assert (out / "000000.jpg").is_file()
@@ -182,7 +184,9 @@ def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path: Path, camera: str)
     """A limit on files' size stands for it: the system refuses to write in the same way."""
     for out in ("frames", "run.mp4"):
         done = subprocess.run(
-            command("pool", "--frames", 3, "--jobs", 1, "--out", tmp_path / out, "--set", camera),
+            command(
+                "pool", "--frames", 3, "--workers", 1, "--out", tmp_path / out, "--set", camera
+            ),
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)),
             capture_output=True,
             text=True,
@@ -197,7 +201,7 @@ def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path: Path, camera: str)
                                            ("frames", signal.SIGTERM)])  # fmt: skip
 def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path, camera, out, sign) -> None:
     run = subprocess.Popen(
-        command("pool", "--seconds", 600, "--jobs", 2, "--out", tmp_path / out, "--set", camera),
+        command("pool", "--seconds", 600, "--workers", 2, "--out", tmp_path / out, "--set", camera),
         stderr=subprocess.PIPE,
         start_new_session=True,
     )

@@ -1,17 +1,17 @@
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from track_run import HZ, Run, Seen, nothing
 from track_truth import CAMERA, DOCK, NOTHING, Pose, approach, found, rotation
 
-from chromadock import Attitude, ChromadockError, DockGeometry, Track, Tracker
+from chromadock import Attitude, DockGeometry, Tracker
 from chromadock.geometry.pose import lever
 from chromadock.look import Found
 from chromadock.rotation import matrix_from_quaternion
@@ -26,35 +26,6 @@ from chromadock.track.candidate import (
 from chromadock.track.plan import FULL_SEARCH_S, MAX_PRIORS, Plan
 from chromadock.track.states import KEPT_S, STATES, TRACKING_S, state_of
 from chromadock.track.tracker import KEEP_EVIDENCE
-
-HZ = 10
-Seen = Callable[[float, Plan], Found]
-
-
-class Run:
-    """A tracker fed from ground truth."""
-
-    def __init__(self) -> None:
-        self.tracker = Tracker(DOCK)
-        self.rng = np.random.default_rng(0)
-        self.time_s = 0.0
-
-    def dock(self, time_s: float, plan: Plan) -> Found:
-        return found(approach(time_s), self.rng)
-
-    def frame(self, seen: Seen, attitude: Attitude | None = None) -> Track:
-        plan = self.tracker.plan(self.time_s)
-        what = seen(self.time_s, plan)
-        track = self.tracker.update(self.time_s, plan, what, CAMERA, attitude)
-        self.time_s = round(self.time_s + 1 / HZ, 6)
-        return track
-
-    def frames(self, seconds: float, seen: Seen) -> list[Track]:
-        return [self.frame(seen) for _ in range(round(seconds * HZ))]
-
-
-def nothing(time_s: float, plan: Plan) -> Found:
-    return NOTHING
 
 
 def elsewhere(pose: Pose, evidence: float = LOCK_EVIDENCE + 1) -> Seen:
@@ -291,48 +262,6 @@ def test_the_track_can_be_asked_for_any_later_time(run: Run) -> None:
     assert run.tracker.at(last - 1) == run.tracker.at(last)
 
 
-def test_the_vehicles_attitude_turns_the_prediction(run: Run) -> None:
-    """It begins to turn right at once; the bearing goes left with it, though nothing was seen."""
-    for _ in range(20):
-        run.frame(lambda time_s, plan: found((np.eye(3), np.array([0, 0, 4.0])), run.rng),
-                  Attitude(0.0, 0.0, 0.0))  # fmt: skip
-    tracks = [run.frame(nothing, Attitude(0.0, 0.0, 0.04 * (k + 1))) for k in range(4)]
-    assert tracks[-1].pose is not None
-    bearing = np.arctan2(tracks[-1].pose.t[0], tracks[-1].pose.t[2])
-    assert bearing == pytest.approx(-0.16, abs=0.12)
-
-
-def test_motion_and_the_heading_tell_the_two_poses_apart(record_property: Any) -> None:
-    """Passing a far dock: the wrong pose would have it turn as the vehicle moves on."""
-    right = {}
-    for heading in (None, 0.0):
-        turns = []
-        for seed in range(8):
-            tracker, rng = Tracker(DOCK), np.random.default_rng(seed)
-            for k in range(61):
-                pose = (np.eye(3), np.array([1.2 - 0.04 * k, 0.1, 6.0]))
-                track = tracker.update(
-                    0.1 * k, tracker.plan(0.1 * k), found(pose, rng), CAMERA,
-                    Attitude(0.0, 0.0, heading),
-                )  # fmt: skip
-            assert track.pose is not None
-            turns.append(abs(np.degrees(2 * np.arcsin(track.pose.q_wxyz[2]))))
-        right[heading] = sum(t < 8 for t in turns)
-    record_property(
-        "figure",
-        f"track: passing at 6 m, the right pose in {right[0.0]} of 8 runs with the heading, "
-        f"{right[None]} without",
-    )
-    assert right[0.0] == 8
-    assert right[0.0] >= right[None]
-
-
-@pytest.mark.parametrize("angles", [(np.nan, 0.0, None), (0.0, np.inf, None), (0.0, 0.0, np.nan)])
-def test_an_attitude_that_is_no_number_is_refused(angles: tuple[float, float, float]) -> None:
-    with pytest.raises(ChromadockError, match="radians"):
-        Attitude(*angles)
-
-
 @pytest.mark.parametrize("shift", [(0.0, -2.0, 0.0), (0.0, 0.0, -1.0), (-2.0, 0.5, 1.0)])
 def test_it_does_not_matter_where_the_dock_has_its_origin(shift: tuple[float, ...]) -> None:
     """The same pixels: at each moment the same dock, its covariance carried to the origin."""
@@ -372,12 +301,6 @@ def test_it_does_not_matter_where_the_dock_has_its_origin(shift: tuple[float, ..
             np.testing.assert_allclose(spread.ravel(), one.covariance, rtol=1e-3, atol=1e-9)
     assert near.state == "tracking"
     assert near.velocity == pytest.approx(far.velocity, abs=1e-6)
-
-
-def test_an_attitude_in_degrees_is_refused() -> None:
-    with pytest.raises(ChromadockError, match="radians, not degrees"):
-        Attitude(2.0, -12.0)
-    assert Attitude(0.0, 0.0, 400.0).yaw_rad == 400.0  # a yaw may be counted on
 
 
 @given(

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from chromadock.output.results import ResultOutput, result_record
 from chromadock.output.run_setup import RunSetup, chromadock_version
+from chromadock.rate import Rate
 from chromadock.results.detection import Detection
 from chromadock.sources import Frame
 
 STALE_S = 5.0
 """A run without a new result for so long has a camera that delivers nothing."""
-_RATE_OVER = 30
-"""Frames by which the rate is told."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +45,7 @@ class Status:
 
     def _forget(self) -> None:
         self._frames = self._dropped = self._next_index = 0
-        self._came_s: deque[float] = deque(maxlen=_RATE_OVER)
+        self._rate = Rate(STALE_S)
 
     def begin(self, setup: RunSetup | None) -> None:
         """A run begins, set to this; None where nobody knows."""
@@ -73,7 +71,7 @@ class Status:
             self._frames += 1
             self._dropped += max(frame.index - self._next_index, 0)
             self._next_index = frame.index + 1
-            self._came_s.append(now_s)
+            self._rate.came(now_s)
             self._newest = Newest(frame, detection, age_s, now_s)
 
     @property
@@ -106,17 +104,18 @@ class Status:
         """
         trouble = self.trouble(now_s)
         with self._changed:
-            newest, outputs = self._newest, self._outputs
+            newest, outputs, rate_hz = self._newest, self._outputs, self._rate.hz(now_s)
             answer: dict[str, Any] = {
                 "version": chromadock_version(),
                 "trouble": trouble,
                 "frames": self._frames,
                 "dropped": self._dropped,
-                "rate_hz": self._rate_hz(now_s),
+                "rate_hz": None if rate_hz is None else round(rate_hz, 1),
                 "vehicle": self._vehicle,
             }
         answer["outputs"] = [
-            {"name": name, "trouble": output.trouble()} for name, output in outputs.items()
+            {"name": name, "trouble": _without_name(output.trouble(), name)}
+            for name, output in outputs.items()
         ]
         if newest is not None:
             age_s = None if newest.age_s is None else newest.age_s + now_s - newest.came_s
@@ -124,8 +123,11 @@ class Status:
             answer["result"] = result_record(newest.frame, newest.detection, newest.age_s)
         return answer
 
-    def _rate_hz(self, now_s: float) -> float | None:
-        """Results a second of late; None with fewer than two, and where they stopped coming."""
-        if len(self._came_s) < 2 or now_s - self._came_s[-1] > STALE_S:
-            return None
-        return round((len(self._came_s) - 1) / (self._came_s[-1] - self._came_s[0] + 1e-9), 1)
+
+def _without_name(trouble: str | None, name: str) -> str | None:
+    """A trouble beside whose name it is shown: messages begin with ``KIND:PLACE``, as the user
+    called the output, or with the place alone."""
+    if trouble is None:
+        return None
+    place = name.partition(":")[2]
+    return trouble.removeprefix(f"{name}: ").removeprefix(f"{place}: ")

@@ -117,8 +117,8 @@ typedef struct {
 place_t cells_place(int i, int m, int n);
 
 /* Draws each row of a small image out linearly to the columns of a larger one
- * with as many rows.  places: room for one for each of those columns. */
-void cells_draw_out(image_t in, image_t out, place_t *restrict places);
+ * with as many rows.  shares: room for one number for each of those columns. */
+void cells_draw_out(image_t in, image_t out, float *restrict shares);
 
 /* Numbers that an image and so many more at both ends of a row need for
  * smoothing. */

@@ -1,4 +1,5 @@
 #include "internal/cells.h"
+#include "internal/vectors.h"
 
 #include <float.h>
 #include <math.h>
@@ -8,6 +9,10 @@
 /* A lamp between four cells has half its signal to noise in each; noise would
  * seldom add more. */
 #define CELL_SHARE 0.7
+/* Cells that are compared together, and so many bytes that are looked at
+ * together: in few of them does any cell stand out. */
+#define BATCH 64
+#define AT_ONCE 8
 /* Peaks that are looked at closely, of all scales. */
 #define MAX_SUMMITS (3 * FRONT_MAX_PEAKS)
 /* Cells within which a peak may belong to a higher one, and into how many parts
@@ -67,47 +72,89 @@ static int keep_strongest(summit_t *summits, int n)
     return kept;
 }
 
-/* Finds the strongest summits, row by row; room for twice MAX_SUMMITS. */
-static int find_summits(const front_frame_t *frame, summit_t *summits)
+/* Lists which of n cells, BATCH at most, are above a limit; returns how many. */
+static inline int list_above(const float *restrict cells, int n, float limit,
+                             int above[BATCH])
+{
+    uint8_t is_above[BATCH] = {0};
+    for (int x = 0; x < n; x++)
+        is_above[x] = cells[x] > limit;
+    int count = 0;
+    for (int first = 0; first < BATCH; first += AT_ONCE) {
+        uint64_t any;
+        memcpy(&any, is_above + first, sizeof(any));
+        if (any == 0)
+            continue;
+        for (int x = first; x < first + AT_ONCE; x++) {
+            above[count] = x;
+            count += is_above[x];
+        }
+    }
+    return count;
+}
+
+/* Whether a cell is a summit, and how strong. */
+static inline bool is_summit(const float *cell, int stride, float least_snr,
+                             float *strength)
+{
+    const float centre = *cell;
+    float near[8];
+    look_around(cell, stride, 1, near);
+    /* Of equal cells the first is the top: the others come after. */
+    bool top = true;
+    for (int i = 0; i < 4; i++)
+        top &= centre >= near[i] && centre > near[i + 4];
+    *strength = brightest(centre, near);
+    return top && *strength >= least_snr;
+}
+
+/* Adds those of a scale, row by row, to n summits; returns how many there are,
+ * the strongest of all where they have no room. */
+WIDE_VECTORS static int add_summits(const front_frame_t *frame, int scale,
+                                    summit_t summits[2 * MAX_SUMMITS], int n)
 {
     const front_layout_t *layout = &frame->layout;
-    int n = 0;
-    for (int scale = 0; scale < layout->scales; scale++) {
-        const image_t snr = at_scale(layout, frame->snr, scale);
-        const float wider =
-            greater((float)layout->cell[scale] / (float)layout->cell[1], 1.0F);
-        const float least_snr = (float)FRONT_MIN_SNR * wider;
-        const float worth = (float)CELL_SHARE * least_snr;
-        /* One in from the edge, so that a peak has neighbours on all sides. */
-        for (int y = 1; y < snr.rows - 1; y++) {
-            const float *row = row_of(snr, y);
-            for (int x = 1; x < snr.columns - 1; x++) {
-                const float centre = row[x];
-                if (!(centre > worth))
-                    continue;
-                float near[8];
-                look_around(row + x, snr.stride, 1, near);
-                /* Of equal cells the first is the top: the others come after.
-                 */
-                bool top = true;
-                for (int i = 0; i < 4; i++)
-                    top &= centre >= near[i] && centre > near[i + 4];
-                const float strength = brightest(centre, near);
-                if (!top || strength < least_snr)
+    const image_t snr = at_scale(layout, frame->snr, scale);
+    const float wider =
+        greater((float)layout->cell[scale] / (float)layout->cell[1], 1.0F);
+    const float least_snr = (float)FRONT_MIN_SNR * wider;
+    const float worth = (float)CELL_SHARE * least_snr;
+    /* One in from the edge, so that a peak has neighbours on all sides. */
+    const int end = snr.columns - 1;
+    for (int y = 1; y < snr.rows - 1; y++) {
+        for (int first = 1; first < end; first += BATCH) {
+            const float *cells = row_of(snr, y) + first;
+            int above[BATCH];
+            const int count =
+                list_above(cells, least(end - first, BATCH), worth, above);
+            for (int i = 0; i < count; i++) {
+                const float *cell = cells + above[i];
+                float strength;
+                if (!is_summit(cell, snr.stride, least_snr, &strength))
                     continue;
                 if (n == 2 * MAX_SUMMITS)
                     n = keep_strongest(summits, n);
                 summits[n++] = (summit_t){
-                    .at = (int)(row + x - frame->snr),
+                    .at = (int)(cell - frame->snr),
                     .scale = scale,
                     .row = y,
-                    .column = x,
+                    .column = first + above[i],
                     .strength = strength,
-                    .centre = centre,
+                    .centre = *cell,
                 };
             }
         }
     }
+    return n;
+}
+
+/* Finds the strongest summits, scale by scale, row by row. */
+static int find_summits(const front_frame_t *frame,
+                        summit_t summits[2 * MAX_SUMMITS])
+{
+    int n = 0;
+    for (int scale = 0; scale < frame->layout.scales; scale++)
+        n = add_summits(frame, scale, summits, n);
     return keep_strongest(summits, n);
 }
 

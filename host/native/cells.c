@@ -207,28 +207,36 @@ WIDE_VECTORS void cells_smooth(image_t image, float *room)
                     row_of(image, y));
 }
 
-/* Hoare's FIND. */
+/* Puts the numbers that are less than a pivot, or no more than it if it belongs
+ * to them itself, before the others; returns how many they are.  Without a
+ * branch, for nobody could foretell it. */
+static int put_first(float *values, int n, float pivot, bool itself)
+{
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        const float value = values[i];
+        values[i] = values[count];
+        values[count] = value;
+        count += (value < pivot) | (itself & (value <= pivot));
+    }
+    return count;
+}
+
+/* Hoare's FIND, by three parts: less, as much, and more. */
 float cells_kth_least(float *values, int n, int k)
 {
-    int low = 0, high = n - 1;
-    while (low < high) {
+    for (;;) {
         const float pivot = values[k];
-        int i = low, j = high;
-        while (i <= j) {
-            while (values[i] < pivot)
-                i++;
-            while (pivot < values[j])
-                j--;
-            if (i <= j) {
-                const float value = values[i];
-                values[i++] = values[j];
-                values[j--] = value;
-            }
+        const int less = put_first(values, n, pivot, false);
+        if (k < less) {
+            n = less;
+            continue;
         }
-        if (j < k)
-            low = i;
-        if (k < i)
-            high = j;
+        const int equal = put_first(values + less, n - less, pivot, true);
+        if (k < less + equal)
+            return pivot;
+        values += less + equal;
+        n -= less + equal;
+        k -= less + equal;
     }
-    return values[k];
 }

@@ -194,11 +194,10 @@ static double set_colour(const frame_t *frame, int32_t size,
         double product = 1;
         for (int32_t j = 0; j < size; j++)
             if (j != i)
-                product *= colour_ratio(
-                    frame->constants->colour_disturbed,
-                    same_colour(&frame->peaks[members[i]],
-                                &frame->peaks[members[j]]),
-                    clutter[j]);
+                product *= colour_ratio(frame->constants->colour_disturbed,
+                                        same_colour(&frame->peaks[members[i]],
+                                                    &frame->peaks[members[j]]),
+                                        clutter[j]);
         sum += product;
     }
     return log(sum / size);

@@ -138,14 +138,16 @@ typedef struct {
 /* Fills in all of a frame but its layout.  Returns 0, or -1 if there is no
  * memory.
  *
- * bgr: the picture in finest cells, 3 bytes each, row by row without gaps.
+ * bgr: the picture, 3 bytes a pixel, row by row without gaps.
+ * pixels: how many rows and columns of it make up a finest cell, 1 or 2.
  * linear: the linear light of each of the 256 values of a byte.
  * signatures: FRONT_HUES x 3, the light of lamps of each hue, the expected
  * first.
  * unexpected: signal to noise that other hues count less: FRONT_UNEXPECTED, or
  * 0 where none is expected before the others. */
-int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
-                  const double *signatures, float unexpected);
+int front_respond(front_frame_t *frame, const uint8_t *bgr, int pixels,
+                  const float *linear, const double *signatures,
+                  float unexpected);
 
 /* Finds the peaks of a frame that front_respond() has filled in.
  *

@@ -72,7 +72,8 @@ static int keep_strongest(summit_t *summits, int n)
     return kept;
 }
 
-/* Lists which of n cells, BATCH at most, are above a limit; returns how many. */
+/* Lists which of n cells, BATCH at most, are above a limit; returns how many.
+ */
 static inline int list_above(const float *restrict cells, int n, float limit,
                              int above[BATCH])
 {
@@ -394,7 +395,7 @@ static void describe(const front_frame_t *frame, const summit_t *summit,
         exact[c] = (double)added[c];
     }
     const float excess = filtered(frame->weights + 3 * best,
-                                  is_clipped(light[0], light[1], light[2]),
+                                  least_weight(light[0], light[1], light[2]),
                                   added[0], added[1], added[2]);
     double *looks = peaks->looks + k * FRONT_LOOKS;
     look_at(frame, summit, looks);

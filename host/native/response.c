@@ -30,6 +30,7 @@ typedef struct {
     float *sums;   /* as many rows */
     float *shares; /* one row, also room for a sum of rows */
     int *which;    /* one row */
+    float *least;  /* one row: the least weights that count */
     float *coarse; /* up to FRONT_HUES images of surrounds or of blocks */
     float *drawn;  /* the same as wide as the scale */
     float *spare;  /* room for smoothing one of the former */
@@ -94,22 +95,24 @@ WIDE_VECTORS static void take_surround_away(work_t *work, int wide)
     }
 }
 
-/* The light that a row adds, and its light where some of it may have been
- * clipped. */
+/* The light that a row adds, and the least weights that count in its cells. */
 typedef struct {
     const float *blue, *green, *red;
-    const float *light[3];
+    const float *least;
 } row_t;
 
-static row_t added_row(const work_t *work, int y)
+static inline row_t added_row(const work_t *work, int y)
 {
-    row_t row = {row_of(work->added[0], y),
-                 row_of(work->added[1], y),
-                 row_of(work->added[2], y),
-                 {NULL, NULL, NULL}};
-    for (int c = 0; c < 3; c++)
-        row.light[c] = row_of(work->light[c], y);
-    return row;
+    if (work->clipped[y]) {
+        const float *restrict blue = row_of(work->light[0], y);
+        const float *restrict green = row_of(work->light[1], y);
+        const float *restrict red = row_of(work->light[2], y);
+        float *restrict least = work->least;
+        for (int x = 0; x < work->snr.columns; x++)
+            least[x] = least_weight(blue[x], green[x], red[x]);
+    }
+    return (row_t){row_of(work->added[0], y), row_of(work->added[1], y),
+                   row_of(work->added[2], y), work->least};
 }
 
 /* What a filter answers to a cell of a row.  any_clipped: whether the row may
@@ -117,14 +120,8 @@ static row_t added_row(const work_t *work, int y)
 static inline float answer_at(const row_t *row, int x, bool any_clipped,
                               const float weights[3])
 {
-    const float b = row->blue[x], g = row->green[x], r = row->red[x];
-    const float whole = filtered(weights, false, b, g, r);
-    if (!any_clipped)
-        return whole;
-    const float part = filtered(weights, true, b, g, r);
-    return is_clipped(row->light[0][x], row->light[1][x], row->light[2][x])
-               ? part
-               : whole;
+    return filtered(weights, any_clipped ? row->least[x] : -FLT_MAX,
+                    row->blue[x], row->green[x], row->red[x]);
 }
 
 /* Adds a share of the size of what a filter answers to a row to sums. */
@@ -197,6 +194,7 @@ static inline void keep_row(const row_t *row, int columns, bool any_clipped,
     for (int x = 0; x < columns; x++) {
         float largest = 0;
         int whose = 0;
+#pragma GCC unroll 6
         for (int hue = 0; hue < hues; hue++) {
             const float above = noise->above[hue * noise->apart + x];
             const float below = noise->below[hue * noise->apart + x];
@@ -269,7 +267,7 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
     const int coarse = FRONT_HUES * parts_down * parts_across;
     const int drawn = FRONT_HUES * parts_down * columns;
     const int spare = cells_smooth_room(parts_down, parts_across);
-    const int numbers = (FRONT_HUES + 1) * columns + coarse + drawn + spare;
+    const int numbers = (FRONT_HUES + 2) * columns + coarse + drawn + spare;
     float *floats = malloc((size_t)numbers * sizeof(float));
     int *which = malloc((size_t)columns * sizeof(int));
     bool *clipped = calloc((size_t)work.snr.rows, sizeof(bool));
@@ -277,7 +275,8 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
     if (enough) {
         work.sums = floats;
         work.shares = work.sums + FRONT_HUES * columns;
-        work.coarse = work.shares + columns;
+        work.least = work.shares + columns;
+        work.coarse = work.least + columns;
         work.drawn = work.coarse + coarse;
         work.spare = work.drawn + drawn;
         work.which = which;
@@ -294,10 +293,11 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
     return enough;
 }
 
-int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
-                  const double *signatures, float unexpected)
+int front_respond(front_frame_t *frame, const uint8_t *bgr, int pixels,
+                  const float *linear, const double *signatures,
+                  float unexpected)
 {
-    if (!light_make(frame, bgr, linear))
+    if (!light_make(frame, bgr, pixels, linear))
         return -1;
     filters_make(frame, signatures);
     for (int scale = 0; scale < frame->layout.scales; scale++) {

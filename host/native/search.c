@@ -292,9 +292,8 @@ static void extend(search_t *search, int32_t k, int32_t class, double place,
         return;
     }
     const int32_t wide = 2 * (search->dock->markers - 2);
-    expected_t expected =
-        expect(search, k, search->dock->offset + class * wide,
-               search->dock->whiten + class * wide * wide);
+    expected_t expected = expect(search, k, search->dock->offset + class * wide,
+                                 search->dock->whiten + class * wide * wide);
     double first_x = search->place_x[search->set[0]];
     double first_y = search->place_y[search->set[0]];
     for (int32_t i = 0; i < search->count; i++) {
@@ -402,8 +401,7 @@ static void search_third(search_t *search, const base_t *base, int32_t third,
             search->set[2] = third;
             most = most_looks(search, 3);
         }
-        double there =
-            base->place + dock->log_norm[first + facet] - 0.5 * off;
+        double there = base->place + dock->log_norm[first + facet] - 0.5 * off;
         /* Few have to be looked at closely. */
         if (there + most < search->least)
             continue;
@@ -463,7 +461,7 @@ static void search_from(search_t *search, int32_t p)
     views_from(search, p, &dock->base, &bases);
     search->set[0] = p;
     for (int32_t i = 0; i < bases.count; i++) {
-        base_t base = {bases.peak[i], 0, bases.x[i], bases.y[i],
+        base_t base = {bases.peak[i],   0, bases.x[i], bases.y[i],
                        bases.square[i], 0};
         while (base.span < dock->spans - 1 &&
                square(dock->edges[base.span]) < base.square)

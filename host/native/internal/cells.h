@@ -65,16 +65,23 @@ static inline bool is_clipped(float blue, float green, float red)
     return greater(blue, greater(green, red)) >= (float)FRONT_CLIPPED_LIGHT;
 }
 
-/* Added light through weights.  Where a channel may have been clipped the
- * negative ones do not count: that channel says only that there is as much or
- * more, and a lamp's core, which clips in more channels than its halo, would
- * otherwise be a hole in it. */
-static inline float filtered(const float weights[3], bool clipped, float blue,
-                             float green, float red)
+/* The least weight that counts in a cell.  Where a channel may have been
+ * clipped the negative ones do not: that channel says only that there is as
+ * much or more, and a lamp's core, which clips in more channels than its halo,
+ * would otherwise be a hole in it. */
+static inline float least_weight(float blue, float green, float red)
 {
-    const float none = clipped ? 0.0F : -FLT_MAX;
-    return greater(weights[0], none) * blue +
-           greater(weights[1], none) * green + greater(weights[2], none) * red;
+    return is_clipped(blue, green, red) ? 0.0F : -FLT_MAX;
+}
+
+/* Added light through weights, which count as the least one where they are
+ * less. */
+static inline float filtered(const float weights[3], float least_one,
+                             float blue, float green, float red)
+{
+    return greater(weights[0], least_one) * blue +
+           greater(weights[1], least_one) * green +
+           greater(weights[2], least_one) * red;
 }
 
 /* Surrounds a scale of an image by its outermost cells; what is beyond the
@@ -134,7 +141,7 @@ float cells_kth_least(float *values, int n, int k);
 
 /* Fills in the light and the covariance of a frame, see front_respond(); false
  * if there is no memory. */
-bool light_make(const front_frame_t *frame, const uint8_t *bgr,
+bool light_make(const front_frame_t *frame, const uint8_t *bgr, int pixels,
                 const float *linear);
 
 /* Fills in the filters of a frame from its covariance, see front_respond(). */

@@ -46,6 +46,7 @@ WIDE_VECTORS static void add_rows(const uint8_t *rows, int32_t count,
     for (int32_t j = 0; j < across; j++, sums += 3) {
         const part_t columns = part_of(j, width, across);
         uint32_t first = 0, second = 0, third = 0;
+#pragma GCC unroll 4
         for (int32_t x = columns.first; x < columns.end; x++) {
             first += room[3 * x];
             second += room[3 * x + 1];

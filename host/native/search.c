@@ -33,11 +33,11 @@ typedef struct {
     /* And of what all markers but the first k add to the log density of the
      * strengths. */
     double strengths_left[SEARCH_MAX_PROMISING + 1];
-    /* The set: the peaks taken for p, q, ..., their b, and of the base: its
-     * displacement over its length squared. */
+    /* The set: the peaks taken for p, q, ..., and their b. */
     int32_t set[SEARCH_MAX_PROMISING];
     double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
-    double base_x, base_y;
+    /* Of all peaks: what b would be. */
+    double every_x[SEARCH_MAX_PROMISING], every_y[SEARCH_MAX_PROMISING];
     int32_t weighed, most_weighed; /* sets, complete or not */
     /* What was found, the best first. */
     int32_t most_sets, found;
@@ -280,6 +280,27 @@ static void take(search_t *search, int32_t k, int32_t i, double x, double y,
     search->y[k] = y;
 }
 
+/* List the peaks that may be a marker, by where it is expected; returns how
+ * many they are. */
+WIDE_VECTORS static int32_t list_expected(const search_t *search,
+                                          const expected_t *expected,
+                                          uint8_t peaks[SEARCH_MAX_PROMISING])
+{
+    const expected_t w = *expected;
+    const double gate = search->dock->gate;
+    const int32_t all = search->count;
+    int64_t within[SEARCH_MAX_PROMISING];
+    for (int32_t i = 0; i < all; i++)
+        within[i] =
+            off_square(&w, search->every_x[i], search->every_y[i]) < gate;
+    int32_t count = 0;
+    for (int32_t i = 0; i < all; i++) {
+        peaks[count] = (uint8_t)i;
+        count += (int32_t)within[i];
+    }
+    return count;
+}
+
 /* Add all markers from the k-th on to a set, in a class of views.
  *
  * place: log density of the places if these markers are right where they are
@@ -294,15 +315,13 @@ static void extend(search_t *search, int32_t k, int32_t class, double place,
     const int32_t wide = 2 * (search->dock->markers - 2);
     expected_t expected = expect(search, k, search->dock->offset + class * wide,
                                  search->dock->whiten + class * wide * wide);
-    double first_x = search->place_x[search->set[0]];
-    double first_y = search->place_y[search->set[0]];
-    for (int32_t i = 0; i < search->count; i++) {
-        double dx = search->place_x[i] - first_x;
-        double dy = search->place_y[i] - first_y;
-        double x = dx * search->base_x + dy * search->base_y;
-        double y = dy * search->base_x - dx * search->base_y;
+    uint8_t peaks[SEARCH_MAX_PROMISING];
+    int32_t count = list_expected(search, &expected, peaks);
+    for (int32_t j = 0; j < count; j++) {
+        int32_t i = peaks[j];
+        double x = search->every_x[i], y = search->every_y[i];
         double off = off_square(&expected, x, y);
-        if (off >= search->dock->gate || is_in_set(search, k, i))
+        if (is_in_set(search, k, i))
             continue;
         if (search->weighed >= search->most_weighed)
             return;
@@ -358,24 +377,36 @@ WIDE_VECTORS static void views_from(const search_t *search, int32_t from,
     views->count = count;
 }
 
-/* The two markers of the base, from p to q; place: log density of the places,
- * but for the shape and for how the base is turned. */
+/* The two markers of the base, from p to q, and log densities: of the places,
+ * but for the shape and for how the base is turned, and of the latter over that
+ * of an upright one.  seen: whether that is known, and every peak's b. */
 typedef struct {
     int32_t q, span;
-    double x, y, square, place;
+    double x, y, square, place, turn;
+    bool seen;
 } base_t;
 
-/* Minus half the square of how far a base is turned, in standard deviations. */
-static double log_turn(const search_t *search, const base_t *base)
+/* Tell what is needed only where a third marker fits. */
+static void see_from(search_t *search, base_t *base)
 {
     const search_window_t *window = &search->dock->base;
     double along = base->x * window->x + base->y * window->y;
     double across = base->y * window->x - base->x * window->y;
-    return -0.5 * square(atan2(across, along) / search->dock->roll_rad);
+    double right = base->x / base->square, down = base->y / base->square;
+    double from_x = search->place_x[search->set[0]];
+    double from_y = search->place_y[search->set[0]];
+    for (int32_t i = 0; i < search->count; i++) {
+        double x = search->place_x[i] - from_x;
+        double y = search->place_y[i] - from_y;
+        search->every_x[i] = x * right + y * down;
+        search->every_y[i] = y * right - x * down;
+    }
+    base->turn = -0.5 * square(atan2(across, along) / search->dock->roll_rad);
+    base->seen = true;
 }
 
 /* Search all sets with a base and a third marker, at x + iy as seen from it. */
-static void search_third(search_t *search, const base_t *base, int32_t third,
+static void search_third(search_t *search, base_t *base, int32_t third,
                          double x, double y)
 {
     const search_dock_t *dock = search->dock;
@@ -414,7 +445,9 @@ static void search_third(search_t *search, const base_t *base, int32_t third,
         }
         if (there + looks < search->least)
             continue;
-        there += log_turn(search, base);
+        if (!base->seen)
+            see_from(search, base);
+        there += base->turn;
         if (there + looks >= search->least)
             extend(search, 3, first + facet, there, &strengths);
     }
@@ -443,8 +476,6 @@ WIDE_VECTORS static void search_base(search_t *search, base_t *base,
      * place is as much denser than its b as the base squared is small. */
     base->place =
         -search->log_places - (search->dock->markers - 1) * log(base->square);
-    search->base_x = base_x;
-    search->base_y = base_y;
     for (int32_t j = 0; j < count; j++)
         if (inside[j] && sides->peak[j] != base->q)
             search_third(search, base, sides->peak[j], x[j], y[j]);
@@ -462,7 +493,7 @@ static void search_from(search_t *search, int32_t p)
     search->set[0] = p;
     for (int32_t i = 0; i < bases.count; i++) {
         base_t base = {bases.peak[i],   0, bases.x[i], bases.y[i],
-                       bases.square[i], 0};
+                       bases.square[i], 0, 0,          false};
         while (base.span < dock->spans - 1 &&
                square(dock->edges[base.span]) < base.square)
             base.span++;

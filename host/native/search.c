@@ -1,195 +1,8 @@
-#include "search.h"
-
+#include "internal/searching.h"
 #include "internal/vectors.h"
-#include "internal/weighing.h"
 
-#include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* More than what rounding does to a sum of logarithms. */
-#define ROUNDING 1e-6
-
-/* Peaks here are the promising ones, numbered from 0. */
-typedef struct {
-    frame_t frame;
-    const search_dock_t *dock;
-    double least;
-    double log_places; /* of the frame's places and of the base's turns */
-    int32_t count;
-    const int32_t *promising;
-    double place_x[SEARCH_MAX_PROMISING], place_y[SEARCH_MAX_PROMISING];
-    /* Bounds, whatever the other members of a set are: of a peak's rarity and
-     * likeness; of the sum of so many peaks'; of the ratio that one peak's
-     * (first's) colour is the other's; and of that with any other. */
-    double rarity[SEARCH_MAX_PROMISING], rarest[SEARCH_MAX_PROMISING + 1];
-    double colour[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
-    double nearest_colour[SEARCH_MAX_PROMISING];
-    /* Of the log ratio of a set's colours, if this peak has the dock's. */
-    double log_colours[SEARCH_MAX_PROMISING];
-    /* Of the log density of the strengths of all markers. */
-    double strengths;
-    /* And of what all markers but the first k add to the log density of the
-     * strengths. */
-    double strengths_left[SEARCH_MAX_PROMISING + 1];
-    /* The set: the peaks taken for p, q, ..., and their b. */
-    int32_t set[SEARCH_MAX_PROMISING];
-    double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
-    /* Of all peaks: what b would be. */
-    double every_x[SEARCH_MAX_PROMISING], every_y[SEARCH_MAX_PROMISING];
-    int32_t weighed, most_weighed; /* sets, complete or not */
-    /* What was found, the best first. */
-    int32_t most_sets, found;
-    int32_t *members;
-    double *evidence, *looks;
-} search_t;
-
-static const peak_t *peak_at(const search_t *search, int32_t i)
-{
-    return &search->frame.peaks[search->promising[i]];
-}
-
-/* Rarity of a peak at most, with any others in a set of so many. */
-static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
-{
-    const peak_t *peak = &frame->peaks[index];
-    int32_t others = size - 1, count = frame->count - size;
-    int32_t stronger = index > others ? index - others : 0;
-    int32_t nearby = peak->stronger > others ? peak->stronger - others : 0;
-    double strongest = count > 0 ? frame->peaks[size].height : 0;
-    double most = frame->heights - peak->height, least = frame->heights;
-    for (int32_t i = 0; i < size; i++)
-        least -= frame->peaks[i].height;
-    return larger(
-        evidence_rarity(frame, peak, stronger, nearby, count, most, strongest),
-        evidence_rarity(frame, peak, stronger, nearby, count, larger(least, 0),
-                        strongest));
-}
-
-/* Density of clutter's chroma at a peak at least: if all others in a set of so
- * many are of its very colour and as well known as the strongest peak's. */
-static double least_clutter_colour(const frame_t *frame, const peak_t *peak,
-                                   int32_t size)
-{
-    double itself = same_colour(peak, peak);
-    double others =
-        (size - 1) * student(0, peak->variance + frame->peaks[0].variance);
-    return evidence_clutter_colour(
-        frame, peak, peak->everywhere - itself - others, frame->count - size,
-        peak->nearby - itself - others, peak->around - 1);
-}
-
-static int descending(const void *a, const void *b)
-{
-    double one = *(const double *)a, other = *(const double *)b;
-    return (one < other) - (one > other);
-}
-
-/* What the colour of each peak is worth if it is that of each other. */
-WIDE_VECTORS static void prepare_colours(search_t *search)
-{
-    const frame_t *frame = &search->frame;
-    const int32_t count = search->count, markers = search->dock->markers;
-    const double disturbed = frame->constants->colour_disturbed;
-    double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
-    double variance[SEARCH_MAX_PROMISING];
-    for (int32_t i = 0; i < count; i++) {
-        x[i] = peak_at(search, i)->chroma_x;
-        y[i] = peak_at(search, i)->chroma_y;
-        variance[i] = peak_at(search, i)->variance;
-        search->nearest_colour[i] = 1;
-    }
-    for (int32_t j = 0; j < count; j++) {
-        const double clutter =
-            least_clutter_colour(frame, peak_at(search, j), markers);
-        double *restrict ratios = search->colour[j];
-        double *restrict nearest = search->nearest_colour;
-        for (int32_t i = 0; i < count; i++) {
-            const double apart = square(x[i] - x[j]) + square(y[i] - y[j]);
-            const double same = student(apart, variance[i] + variance[j]);
-            const double ratio = colour_ratio(disturbed, same, clutter);
-            ratios[i] = i == j ? 1 : ratio;
-            nearest[i] = larger(nearest[i], ratios[i]);
-        }
-    }
-}
-
-static void prepare_bounds(search_t *search)
-{
-    const frame_t *frame = &search->frame;
-    const evidence_constants_t *constants = frame->constants;
-    int32_t markers = search->dock->markers;
-    /* The clutter looks least like lamps without those that do most. */
-    double sorted[EVIDENCE_MAX_PEAKS] = {0}, ratios = frame->ratios;
-    for (int32_t i = 0; i < frame->count; i++)
-        sorted[i] = frame->peaks[i].ratio;
-    qsort(sorted, (size_t)frame->count, sizeof(double), descending);
-    for (int32_t i = 0; i < markers; i++)
-        ratios -= sorted[i];
-    double usual =
-        evidence_log_mean_ratio(frame, frame->count - markers, ratios);
-    for (int32_t i = 0; i < search->count; i++) {
-        search->rarity[i] = peak_at(search, i)->likeness - usual +
-                            most_rarity(frame, search->promising[i], markers);
-        search->rarest[i + 1] = search->rarity[i];
-    }
-    search->rarest[0] = 0;
-    qsort(search->rarest + 1, (size_t)search->count, sizeof(double),
-          descending);
-    for (int32_t i = 0; i < search->count; i++)
-        search->rarest[i + 1] += search->rarest[i];
-    prepare_colours(search);
-    for (int32_t i = 0; i < search->count; i++)
-        search->log_colours[i] = (markers - 1) * log(search->nearest_colour[i]);
-    /* Markers that no noise disturbs, all as strong, are as dense as any. */
-    double weight = 1 / square(constants->strength_spread), all = 0;
-    double log_density = 0.5 * log(weight / (2 * PI));
-    strengths_t strengths = {0};
-    for (int32_t k = 1; k <= markers; k++) {
-        add_strength(&strengths, 0, weight, log_density,
-                     search->dock->along[k - 1]);
-        all = evidence_log_alike(constants, &strengths);
-        search->strengths_left[k] = -all;
-    }
-    for (int32_t k = 1; k <= markers; k++)
-        search->strengths_left[k] += all;
-    search->strengths = all;
-}
-
-/* What hoped_looks() is at most, told by what is known of each of the first k
- * peaks alone. */
-static double most_looks(const search_t *search, int32_t k)
-{
-    double rarity = search->rarest[search->dock->markers - k];
-    double colour = search->log_colours[search->set[0]];
-    for (int32_t i = 0; i < k; i++) {
-        rarity += search->rarity[search->set[i]];
-        colour = larger(colour, search->log_colours[search->set[i]]);
-    }
-    return search->strengths + rarity + colour + ROUNDING;
-}
-
-/* What strengths, rarity and colours of a set may come to at most, whose first
- * k peaks are known: if the others are the rarest, and of the colour nearest
- * to that of the one that has the dock's. */
-static double hoped_looks(const search_t *search, int32_t k,
-                          const strengths_t *strengths)
-{
-    int32_t others = search->dock->markers - k;
-    double rarity = search->rarest[others], colour = DBL_MIN;
-    for (int32_t i = 0; i < k; i++) {
-        double common = 1;
-        for (int32_t j = 0; j < k; j++)
-            common *= search->colour[search->set[j]][search->set[i]];
-        for (int32_t j = 0; j < others; j++)
-            common *= search->nearest_colour[search->set[i]];
-        colour = larger(colour, common);
-        rarity += search->rarity[search->set[i]];
-    }
-    return evidence_log_alike(search->frame.constants, strengths) +
-           search->strengths_left[k] + rarity + log(colour);
-}
 
 /* Keep the complete set with that log density of its places, if it is among
  * the best. */
@@ -329,7 +142,7 @@ static void extend(search_t *search, int32_t k, int32_t class, double place,
         strengths_t sums = *strengths;
         take(search, k, i, x, y, &sums);
         search->weighed++;
-        if (there + hoped_looks(search, k + 1, &sums) >= search->least)
+        if (there + bounds_looks(search, k + 1, &sums) >= search->least)
             extend(search, k + 1, class, there, &sums);
     }
 }
@@ -430,7 +243,7 @@ static void search_third(search_t *search, base_t *base, int32_t third,
             search->weighed++;
             search->set[1] = base->q;
             search->set[2] = third;
-            most = most_looks(search, 3);
+            most = bounds_most_looks(search, 3);
         }
         double there = base->place + dock->log_norm[first + facet] - 0.5 * off;
         /* Few have to be looked at closely. */
@@ -441,7 +254,7 @@ static void search_third(search_t *search, base_t *base, int32_t third,
             take(search, 0, search->set[0], 0, 0, &strengths);
             take(search, 1, base->q, 1, 0, &strengths);
             take(search, 2, third, x, y, &strengths);
-            looks = hoped_looks(search, 3, &strengths);
+            looks = bounds_looks(search, 3, &strengths);
         }
         if (there + looks < search->least)
             continue;
@@ -528,7 +341,7 @@ int32_t search_find(const evidence_constants_t *constants,
     search.members = members;
     search.evidence = evidence;
     search.looks = looks;
-    prepare_bounds(&search);
+    bounds_prepare(&search);
     for (int32_t i = 0; i < search.count; i++) {
         search.place_x[i] = peak_at(&search, i)->x;
         search.place_y[i] = peak_at(&search, i)->y;

@@ -108,7 +108,7 @@ void boxes_mean(const uint8_t *pixels, int32_t height, int32_t width,
         parts_t all_columns = parts_of(width, across);
         for (int32_t j = 0; j < across; j += CELLS) {
             const int32_t cells = across - j < CELLS ? across - j : CELLS;
-            double full[3 * CELLS];
+            double full[3 * CELLS] = {0};
             for (int32_t k = 0; k < cells; k++) {
                 const part_t columns = next_part(&all_columns);
                 const double count = (double)(rows.end - rows.first) *

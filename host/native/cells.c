@@ -12,17 +12,15 @@ void cells_repeat_outermost(const front_layout_t *layout, float *image,
                             int scale)
 {
     const image_t inner = at_scale(layout, image, scale);
-    const int rest = inner.stride - inner.columns - 2 * FRONT_BORDER;
     for (int y = 0; y < inner.rows; y++) {
         float *row = row_of(inner, y);
         for (int x = 1; x <= FRONT_BORDER; x++) {
             row[-x] = row[0];
             row[inner.columns - 1 + x] = row[inner.columns - 1];
         }
-        memset(row + inner.columns + FRONT_BORDER, 0,
-               (size_t)rest * sizeof(float));
     }
-    const size_t whole = (size_t)inner.stride * sizeof(float);
+    const size_t whole =
+        (size_t)(inner.columns + 2 * FRONT_BORDER) * sizeof(float);
     for (int y = 1; y <= FRONT_BORDER; y++) {
         memcpy(row_of(inner, -y) - FRONT_BORDER,
                row_of(inner, 0) - FRONT_BORDER, whole);

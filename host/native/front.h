@@ -103,7 +103,8 @@ typedef struct {
 /* What is known of a frame.  Images have layout.rows x layout.columns cells;
  * those of three channels are three of them one after the other, blue, green
  * and red.  Light is linear, 0 to 1.  The border of light and snr repeats the
- * outermost cells; that of added and best is not set. */
+ * outermost cells; that of added and best is not set, nor is what lies beside
+ * the border of a scale that is narrower than the finest. */
 typedef struct {
     front_layout_t layout;
     float *light;  /* 3 images: the mean light of each cell */

@@ -84,8 +84,7 @@ static inline float filtered(const float weights[3], float least_one,
            greater(weights[2], least_one) * red;
 }
 
-/* Surrounds a scale of an image by its outermost cells; what is beyond the
- * border in the same rows becomes 0. */
+/* Surrounds a scale of an image by its outermost cells. */
 void cells_repeat_outermost(const front_layout_t *layout, float *image,
                             int scale);
 

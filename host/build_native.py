@@ -57,13 +57,15 @@ ffi.set_source(
     depends=[os.path.relpath(header, HERE) for header in sorted(NATIVE.rglob("*.h"))],
     include_dirs=[str(NATIVE)],
     # Loops over cells become vector instructions of any processor of the kind.  Nothing asks
-    # for errno or for floating-point exceptions, which would prevent it.  And no other library
-    # may put functions of its own in these ones' place, so that they call each other directly.
+    # for errno, for floating-point exceptions or for integers that wrap around, which would
+    # prevent it.  And no other library may put functions of its own in these ones' place, so that
+    # they call each other directly.
     extra_compile_args=[
         "-std=c11",
         "-O3",
         "-fno-math-errno",
         "-fno-trapping-math",
+        "-fno-wrapv",
         "-fvisibility=hidden",
     ],
 )

@@ -169,7 +169,8 @@ class Detector:
         track = None
         if self._tracker is None:
             R_expected, R_covariance = expected_if_told(attitude, self._mounting)
-            look = replace(look, R_expected=R_expected, R_covariance=R_covariance)
+            if R_expected is not None:
+                look = replace(look, R_expected=R_expected, R_covariance=R_covariance)
             found = self._method.find(look, watch)
         else:
             plan = self._tracker.plan(time_s, attitude)

@@ -157,6 +157,8 @@ class PinholeLens:
 
     def ideal(self, pixels: Real) -> Real:
         """See ``Lens``: beyond the fold it goes on as from just before it."""
+        if self.fold is None:
+            return self._inverted(pixels)
         beyond = np.maximum(self._beyond(pixels), 1.0)[:, None]
         centre = self.matrix[:2, 2]
         return self._inverted((pixels - centre) / beyond + centre) * beyond

@@ -12,17 +12,15 @@ void cells_repeat_outermost(const front_layout_t *layout, float *image,
                             int scale)
 {
     const image_t inner = at_scale(layout, image, scale);
-    const int rest = inner.stride - inner.columns - 2 * FRONT_BORDER;
     for (int y = 0; y < inner.rows; y++) {
         float *row = row_of(inner, y);
         for (int x = 1; x <= FRONT_BORDER; x++) {
             row[-x] = row[0];
             row[inner.columns - 1 + x] = row[inner.columns - 1];
         }
-        memset(row + inner.columns + FRONT_BORDER, 0,
-               (size_t)rest * sizeof(float));
     }
-    const size_t whole = (size_t)inner.stride * sizeof(float);
+    const size_t whole =
+        (size_t)(inner.columns + 2 * FRONT_BORDER) * sizeof(float);
     for (int y = 1; y <= FRONT_BORDER; y++) {
         memcpy(row_of(inner, -y) - FRONT_BORDER,
                row_of(inner, 0) - FRONT_BORDER, whole);
@@ -55,8 +53,14 @@ WIDE_VECTORS void cells_sum_parts(const float *restrict in, int n,
             out[k] = factor * (in[2 * k] + in[2 * k + 1]);
         return;
     }
+    const int wide = n / parts;
+    span_t span = cells_span(0, n, parts);
     for (int k = 0; k < parts; k++) {
-        const span_t span = cells_span(k, n, parts);
+        /* Parts of whole cells differ in where they begin alone. */
+        if (n == wide * parts)
+            span.first = k * wide, span.last = span.first + wide - 1;
+        else
+            span = cells_span(k, n, parts);
         float sum = span.head * in[span.first];
         for (int x = span.first + 1; x < span.last; x++)
             sum += in[x];
@@ -118,24 +122,31 @@ place_t cells_place(int i, int m, int n)
 }
 
 WIDE_VECTORS void cells_draw_out(image_t in, image_t out,
-                                 place_t *restrict places)
+                                 float *restrict shares)
 {
     const float step = (float)in.columns / (float)out.columns;
     for (int x = 0; x < out.columns; x++)
-        places[x] = place_of(x, step, in.columns);
-    for (int y = 0; y < in.rows; y++) {
-        const float *restrict from = row_of(in, y);
-        float *restrict to = row_of(out, y);
-        for (int x = 0; x < out.columns; x++) {
-            const place_t p = places[x];
-            to[x] = from[p.before] + p.share * (from[p.after] - from[p.before]);
+        shares[x] = place_of(x, step, in.columns).share;
+    /* A column at a time, for all that lies between it and the next one is
+     * on one straight line in each row. */
+    for (int k = 0, first = 0, end; k < in.columns; k++, first = end) {
+        for (end = first; end < out.columns; end++)
+            if (place_of(end, step, in.columns).before > k)
+                break;
+        const int after = least(k + 1, in.columns - 1);
+        for (int y = 0; y < in.rows; y++) {
+            const float here = row_of(in, y)[k];
+            const float rise = row_of(in, y)[after] - here;
+            float *restrict to = row_of(out, y);
+            for (int x = first; x < end; x++)
+                to[x] = here + shares[x] * rise;
         }
     }
 }
 
 int cells_smooth_room(int rows, int columns)
 {
-    return (rows + 1) * columns + 2 * REACH;
+    return (rows + 2 * REACH + 1) * columns + 2 * REACH;
 }
 
 /* Index of a row or column that is as far inside n as i is outside. */
@@ -146,6 +157,20 @@ static int mirrored(int i, int n)
     return n > 1 ? i : 0;
 }
 
+/* One row of n smoothed values: from the values of in that are 0, 1, 2 ...
+ * times so many numbers on, REACH before each and REACH after it. */
+static inline void smooth_line(const float kernel[2 * REACH + 1],
+                               const float *restrict in, int apart, int n,
+                               float *restrict out)
+{
+    for (int x = 0; x < n; x++) {
+        float sum = 0;
+        for (int i = 0; i <= 2 * REACH; i++)
+            sum += kernel[i] * in[x + i * apart];
+        out[x] = sum;
+    }
+}
+
 WIDE_VECTORS void cells_smooth(image_t image, float *room)
 {
     float kernel[2 * REACH + 1], sum = 0;
@@ -154,54 +179,62 @@ WIDE_VECTORS void cells_smooth(image_t image, float *room)
             (float)exp(-0.5 * i * i / (SMOOTHING * SMOOTHING));
     for (int i = 0; i <= 2 * REACH; i++)
         kernel[i] /= sum;
-    const int columns = image.columns;
-    const image_t across = {room, columns, image.rows, columns};
-    float *restrict wide = room + image.rows * columns;
-    memset(across.first, 0, (size_t)(image.rows * columns) * sizeof(float));
-    for (int y = 0; y < image.rows; y++) {
+    const int rows = image.rows, columns = image.columns;
+    const size_t row_size = (size_t)columns * sizeof(float);
+    /* The image smoothed along its rows, with REACH rows more at both ends. */
+    const image_t across = {room + REACH * columns, columns, rows, columns};
+    float *wide = room + (rows + 2 * REACH) * columns;
+    for (int y = 0; y < rows; y++) {
         const float *from = row_of(image, y);
-        float *restrict to = row_of(across, y);
-        for (int x = -REACH; x < columns + REACH; x++)
-            wide[x + REACH] = from[mirrored(x, columns)];
-        for (int i = 0; i <= 2 * REACH; i++) {
-            for (int x = 0; x < columns; x++)
-                to[x] += kernel[i] * wide[x + i];
+        memcpy(wide + REACH, from, row_size);
+        for (int i = 1; i <= REACH; i++) {
+            wide[REACH - i] = from[mirrored(-i, columns)];
+            wide[REACH + columns - 1 + i] =
+                from[mirrored(columns - 1 + i, columns)];
         }
+        smooth_line(kernel, wide, 1, columns, row_of(across, y));
     }
-    for (int y = 0; y < image.rows; y++) {
-        float *restrict to = row_of(image, y);
-        memset(to, 0, (size_t)columns * sizeof(float));
-        for (int i = -REACH; i <= REACH; i++) {
-            const float *restrict from =
-                row_of(across, mirrored(y + i, image.rows));
-            for (int x = 0; x < columns; x++)
-                to[x] += kernel[i + REACH] * from[x];
-        }
+    for (int i = 1; i <= REACH; i++) {
+        memcpy(row_of(across, -i), row_of(across, mirrored(-i, rows)),
+               row_size);
+        memcpy(row_of(across, rows - 1 + i),
+               row_of(across, mirrored(rows - 1 + i, rows)), row_size);
     }
+    for (int y = 0; y < rows; y++)
+        smooth_line(kernel, row_of(across, y - REACH), columns, columns,
+                    row_of(image, y));
 }
 
-/* Hoare's FIND. */
+/* Puts the numbers that are less than a pivot, or no more than it if it belongs
+ * to them itself, before the others; returns how many they are.  Without a
+ * branch, for nobody could foretell it. */
+static int put_first(float *values, int n, float pivot, bool itself)
+{
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        const float value = values[i];
+        values[i] = values[count];
+        values[count] = value;
+        count += (value < pivot) | (itself & (value <= pivot));
+    }
+    return count;
+}
+
+/* Hoare's FIND, by three parts: less, as much, and more. */
 float cells_kth_least(float *values, int n, int k)
 {
-    int low = 0, high = n - 1;
-    while (low < high) {
+    for (;;) {
         const float pivot = values[k];
-        int i = low, j = high;
-        while (i <= j) {
-            while (values[i] < pivot)
-                i++;
-            while (pivot < values[j])
-                j--;
-            if (i <= j) {
-                const float value = values[i];
-                values[i++] = values[j];
-                values[j--] = value;
-            }
+        const int less = put_first(values, n, pivot, false);
+        if (k < less) {
+            n = less;
+            continue;
         }
-        if (j < k)
-            low = i;
-        if (k < i)
-            high = j;
+        const int equal = put_first(values + less, n - less, pivot, true);
+        if (k < less + equal)
+            return pivot;
+        values += less + equal;
+        n -= less + equal;
+        k -= less + equal;
     }
-    return values[k];
 }

@@ -1,13 +1,79 @@
 #include "evidence.h"
 
+#include "internal/vectors.h"
 #include "internal/weighing.h"
 
 #include <math.h>
 #include <stddef.h>
 
-void evidence_prepare(frame_t *frame, const evidence_constants_t *constants,
-                      const evidence_peaks_t *peaks)
+/* What is known of a peak by itself. */
+static void describe(peak_t *peak, const frame_t *frame,
+                     const evidence_peaks_t *peaks, int32_t i)
 {
+    const evidence_constants_t *constants = frame->constants;
+    double noise = 1 / peaks->snr[i];
+    peak->x = peaks->places[2 * i];
+    peak->y = peaks->places[2 * i + 1];
+    peak->likeness = peaks->likeness[i];
+    peak->ratio = exp(peak->likeness);
+    peak->log_snr = log(peaks->snr[i]);
+    peak->weight = 1 / (square(constants->strength_spread) + square(noise));
+    peak->log_density = 0.5 * log(peak->weight / (2 * PI));
+    peak->height = larger(peak->log_snr - log(peaks->least_snr), 0);
+    peak->around_area = PI * frame->near_square * peaks->inside[i];
+    peak->chroma_x = peaks->chroma[2 * i];
+    peak->chroma_y = peaks->chroma[2 * i + 1];
+    peak->variance = square(constants->colour_spread) +
+                     square(constants->colour_noise * noise);
+    peak->supposed = student(square(peak->chroma_x) + square(peak->chroma_y),
+                             square(constants->colour_wide) + peak->variance);
+}
+
+/* Numbers of all peaks side by side, for vector instructions. */
+typedef struct {
+    double x[EVIDENCE_MAX_PEAKS], y[EVIDENCE_MAX_PEAKS];
+    double chroma_x[EVIDENCE_MAX_PEAKS], chroma_y[EVIDENCE_MAX_PEAKS];
+    double variance[EVIDENCE_MAX_PEAKS];
+    double everywhere[EVIDENCE_MAX_PEAKS], nearby[EVIDENCE_MAX_PEAKS];
+    int64_t around[EVIDENCE_MAX_PEAKS];
+} columns_t;
+
+/* Compares the i-th peak with those before it. */
+static inline void compare(columns_t *restrict all, int32_t i,
+                           double near_square, peak_t *peak)
+{
+    const double x = all->x[i], y = all->y[i], variance = all->variance[i];
+    const double chroma_x = all->chroma_x[i], chroma_y = all->chroma_y[i];
+    double same[EVIDENCE_MAX_PEAKS], same_nearby[EVIDENCE_MAX_PEAKS];
+    int64_t stronger = 0;
+    for (int32_t j = 0; j < i; j++) {
+        const double apart = square(chroma_x - all->chroma_x[j]) +
+                             square(chroma_y - all->chroma_y[j]);
+        const bool is_near =
+            square(x - all->x[j]) + square(y - all->y[j]) < near_square;
+        same[j] = student(apart, variance + all->variance[j]);
+        same_nearby[j] = is_near ? same[j] : 0;
+        all->everywhere[j] += same[j];
+        all->nearby[j] += same_nearby[j];
+        all->around[j] += is_near;
+        stronger += is_near;
+    }
+    double everywhere = student(0, 2 * variance), nearby = everywhere;
+    for (int32_t j = 0; j < i; j++) {
+        everywhere += same[j];
+        nearby += same_nearby[j];
+    }
+    all->everywhere[i] = everywhere;
+    all->nearby[i] = nearby;
+    all->around[i] = 1 + stronger;
+    peak->stronger = (int32_t)stronger;
+}
+
+WIDE_VECTORS void evidence_prepare(frame_t *frame,
+                                   const evidence_constants_t *constants,
+                                   const evidence_peaks_t *peaks)
+{
+    columns_t all;
     frame->constants = constants;
     frame->count = peaks->count;
     frame->area = peaks->area;
@@ -15,41 +81,20 @@ void evidence_prepare(frame_t *frame, const evidence_constants_t *constants,
     frame->heights = frame->ratios = 0;
     for (int32_t i = 0; i < peaks->count; i++) {
         peak_t *peak = &frame->peaks[i];
-        double noise = 1 / peaks->snr[i];
-        peak->x = peaks->places[2 * i];
-        peak->y = peaks->places[2 * i + 1];
-        peak->likeness = peaks->likeness[i];
-        peak->ratio = exp(peak->likeness);
-        peak->log_snr = log(peaks->snr[i]);
-        peak->weight = 1 / (square(constants->strength_spread) + square(noise));
-        peak->log_density = 0.5 * log(peak->weight / (2 * PI));
-        peak->height = larger(peak->log_snr - log(peaks->least_snr), 0);
-        peak->around_area = PI * frame->near_square * peaks->inside[i];
-        peak->chroma_x = peaks->chroma[2 * i];
-        peak->chroma_y = peaks->chroma[2 * i + 1];
-        peak->variance = square(constants->colour_spread) +
-                         square(constants->colour_noise * noise);
-        peak->supposed =
-            student(square(peak->chroma_x) + square(peak->chroma_y),
-                    square(constants->colour_wide) + peak->variance);
-        peak->everywhere = peak->nearby = same_colour(peak, peak);
-        peak->around = 1;
-        peak->stronger = 0;
+        describe(peak, frame, peaks, i);
         frame->heights += peak->height;
         frame->ratios += peak->ratio;
-        for (int32_t j = 0; j < i; j++) {
-            peak_t *other = &frame->peaks[j];
-            double same = same_colour(peak, other);
-            peak->everywhere += same;
-            other->everywhere += same;
-            if (are_near(frame, peak, other)) {
-                peak->nearby += same;
-                other->nearby += same;
-                peak->around++;
-                other->around++;
-                peak->stronger++;
-            }
-        }
+        all.x[i] = peak->x;
+        all.y[i] = peak->y;
+        all.chroma_x[i] = peak->chroma_x;
+        all.chroma_y[i] = peak->chroma_y;
+        all.variance[i] = peak->variance;
+        compare(&all, i, frame->near_square, peak);
+    }
+    for (int32_t i = 0; i < peaks->count; i++) {
+        frame->peaks[i].everywhere = all.everywhere[i];
+        frame->peaks[i].nearby = all.nearby[i];
+        frame->peaks[i].around = (int32_t)all.around[i];
     }
 }
 
@@ -93,12 +138,6 @@ double evidence_clutter_colour(const frame_t *frame, const peak_t *peak,
     double overall = (larger(everywhere, 0) + supposed * peak->supposed) /
                      (count + supposed);
     return (larger(nearby, 0) + supposed * overall) / (around + supposed);
-}
-
-double evidence_colour_ratio(const frame_t *frame, double same, double clutter)
-{
-    double disturbed = frame->constants->colour_disturbed;
-    return (1 - disturbed) * same / clutter + disturbed;
 }
 
 /* Sum of the rarities of a set, whose members are no clutter. */
@@ -155,11 +194,10 @@ static double set_colour(const frame_t *frame, int32_t size,
         double product = 1;
         for (int32_t j = 0; j < size; j++)
             if (j != i)
-                product *= evidence_colour_ratio(
-                    frame,
-                    same_colour(&frame->peaks[members[i]],
-                                &frame->peaks[members[j]]),
-                    clutter[j]);
+                product *= colour_ratio(frame->constants->colour_disturbed,
+                                        same_colour(&frame->peaks[members[i]],
+                                                    &frame->peaks[members[j]]),
+                                        clutter[j]);
         sum += product;
     }
     return log(sum / size);

@@ -103,7 +103,8 @@ typedef struct {
 /* What is known of a frame.  Images have layout.rows x layout.columns cells;
  * those of three channels are three of them one after the other, blue, green
  * and red.  Light is linear, 0 to 1.  The border of light and snr repeats the
- * outermost cells; that of added and best is not set. */
+ * outermost cells; that of added and best is not set, nor is what lies beside
+ * the border of a scale that is narrower than the finest. */
 typedef struct {
     front_layout_t layout;
     float *light;  /* 3 images: the mean light of each cell */
@@ -138,14 +139,16 @@ typedef struct {
 /* Fills in all of a frame but its layout.  Returns 0, or -1 if there is no
  * memory.
  *
- * bgr: the picture in finest cells, 3 bytes each, row by row without gaps.
+ * bgr: the picture, 3 bytes a pixel, row by row without gaps.
+ * pixels: how many rows and columns of it make up a finest cell, 1 or 2.
  * linear: the linear light of each of the 256 values of a byte.
  * signatures: FRONT_HUES x 3, the light of lamps of each hue, the expected
  * first.
  * unexpected: signal to noise that other hues count less: FRONT_UNEXPECTED, or
  * 0 where none is expected before the others. */
-int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
-                  const double *signatures, float unexpected);
+int front_respond(front_frame_t *frame, const uint8_t *bgr, int pixels,
+                  const float *linear, const double *signatures,
+                  float unexpected);
 
 /* Finds the peaks of a frame that front_respond() has filled in.
  *

@@ -1,4 +1,5 @@
 #include "internal/cells.h"
+#include "internal/vectors.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,20 +21,49 @@
  * (2.2 * 0.05^1.2 / 255)^2 / 12. */
 #define QUANTUM 5e-9
 
-static void decode(const front_frame_t *frame, const uint8_t *restrict bgr,
-                   const float *restrict linear)
+/* Means of 2 x 2 pixels of two rows of n numbers, 3 a pixel, rounded, halves
+ * up: at every sixth number begins the mean that two pixels have. */
+static inline void halve_rows(const uint8_t *restrict above,
+                              const uint8_t *restrict below, int n,
+                              uint8_t *restrict means)
+{
+    for (int k = 0; k < n - 3; k++) {
+        const unsigned sum =
+            0U + above[k] + below[k] + above[k + 3] + below[k + 3];
+        means[k] = (uint8_t)((sum + 2) / 4);
+    }
+}
+
+/* Linear light of a row of cells, each so many bytes after the one before. */
+static inline void decode_row(const uint8_t *restrict bgr, int apart,
+                              const float *restrict linear, int cells,
+                              float *restrict blue, float *restrict green,
+                              float *restrict red)
+{
+#pragma GCC unroll 4
+    for (int x = 0; x < cells; x++, bgr += apart) {
+        blue[x] = linear[bgr[0]];
+        green[x] = linear[bgr[1]];
+        red[x] = linear[bgr[2]];
+    }
+}
+
+/* Linear light of the finest cells.  room: for one row of the picture. */
+WIDE_VECTORS static void decode(const front_frame_t *frame, const uint8_t *bgr,
+                                int pixels, const float *linear, uint8_t *room)
 {
     const front_layout_t *layout = &frame->layout;
     const int image = layout->rows * layout->columns;
-    for (int y = 0; y < layout->height[0]; y++) {
-        float *restrict blue =
+    const int columns = layout->width[0], numbers = 3 * columns * pixels;
+    for (int y = 0; y < layout->height[0]; y++, bgr += numbers * pixels) {
+        float *blue =
             frame->light + first_cell(layout, 0) + y * layout->columns;
-        float *restrict green = blue + image;
-        float *restrict red = green + image;
-        for (int x = 0; x < layout->width[0]; x++, bgr += 3) {
-            blue[x] = linear[bgr[0]];
-            green[x] = linear[bgr[1]];
-            red[x] = linear[bgr[2]];
+        float *green = blue + image, *red = green + image;
+        if (pixels == 1) {
+            decode_row(bgr, 3, linear, columns, blue, green, red);
+        } else {
+            halve_rows(bgr, bgr + numbers, numbers, room);
+            decode_row(room, 6, linear, columns, blue, green, red);
         }
     }
 }
@@ -96,25 +126,28 @@ static void measure_fluctuation(const front_frame_t *frame)
                                (i % 4 == 0 ? QUANTUM : 0.0);
 }
 
-bool light_make(const front_frame_t *frame, const uint8_t *bgr,
+bool light_make(const front_frame_t *frame, const uint8_t *bgr, int pixels,
                 const float *linear)
 {
     const front_layout_t *layout = &frame->layout;
     float *row = malloc((size_t)layout->columns * sizeof(float));
-    if (row == NULL)
-        return false;
-    decode(frame, bgr, linear);
-    for (int c = 0; c < 3; c++) {
-        float *light = channel(layout, frame->light, c);
-        for (int scale = 1; scale < layout->scales; scale++)
-            cells_shrink(at_scale(layout, light, scale - 1),
-                         at_scale(layout, light, scale), row);
-        for (int scale = 0; scale < layout->scales; scale++)
-            cells_repeat_outermost(layout, light, scale);
+    uint8_t *bytes = malloc(6 * (size_t)layout->columns);
+    const bool enough = row && bytes;
+    if (enough) {
+        decode(frame, bgr, pixels, linear, bytes);
+        for (int c = 0; c < 3; c++) {
+            float *light = channel(layout, frame->light, c);
+            for (int scale = 1; scale < layout->scales; scale++)
+                cells_shrink(at_scale(layout, light, scale - 1),
+                             at_scale(layout, light, scale), row);
+            for (int scale = 0; scale < layout->scales; scale++)
+                cells_repeat_outermost(layout, light, scale);
+        }
+        measure_fluctuation(frame);
     }
     free(row);
-    measure_fluctuation(frame);
-    return true;
+    free(bytes);
+    return enough;
 }
 
 static double dot(const double a[3], const double b[3])

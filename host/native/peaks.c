@@ -1,155 +1,14 @@
-#include "internal/cells.h"
+#include "internal/summits.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A lamp between four cells has half its signal to noise in each; noise would
- * seldom add more. */
-#define CELL_SHARE 0.7
-/* Peaks that are looked at closely, of all scales. */
-#define MAX_SUMMITS (3 * FRONT_MAX_PEAKS)
-/* Cells within which a peak may belong to a higher one, and into how many parts
- * the way there is cut. */
-#define NEARBY 12
-#define PARTS 8
 /* Clutter grows rarer with about this power of its strength. */
 #define WORTH 2.0
 /* Log likelihood ratio: less is kept by no lamp that matters. */
 #define LEAST_LIKENESS -5.0
-
-/* A cell that stands out and is no lower than those about it. */
-typedef struct {
-    int at, scale, row, column;
-    float strength; /* signal to noise of the brightest 2 x 2 cells with it */
-    float centre;   /* its own signal to noise */
-    float saddle;   /* see FRONT_SADDLE */
-} summit_t;
-
-/* Eight directions, those opposite four apart: to the right, then clockwise. */
-static const int DOWN[8] = {0, 1, 1, 1, 0, -1, -1, -1};
-static const int ACROSS[8] = {1, 1, 0, -1, -1, -1, 0, 1};
-
-/* Values some cells off in the eight directions. */
-static void look_around(const float *cell, int stride, int radius,
-                        float around[8])
-{
-    for (int i = 0; i < 8; i++)
-        around[i] = cell[radius * (DOWN[i] * stride + ACROSS[i])];
-}
-
-static float brightest(float centre, const float near[8])
-{
-    float highest = 0;
-    for (int i = 0; i < 8; i += 2)
-        highest = greater(highest, near[i] + near[i + 1] + near[(i + 2) % 8]);
-    return 0.5F * (centre + highest);
-}
-
-/* Leaves the strongest, of equal ones the first, in the same order. */
-static int keep_strongest(summit_t *summits, int n)
-{
-    if (n <= MAX_SUMMITS)
-        return n;
-    float strengths[2 * MAX_SUMMITS];
-    for (int i = 0; i < n; i++)
-        strengths[i] = summits[i].strength;
-    const float limit = cells_kth_least(strengths, n, n - MAX_SUMMITS);
-    int equal = MAX_SUMMITS, kept = 0;
-    for (int i = 0; i < n; i++)
-        equal -= summits[i].strength > limit;
-    for (int i = 0; i < n; i++) {
-        const float strength = summits[i].strength;
-        if (strength > limit || (strength >= limit && equal-- > 0))
-            summits[kept++] = summits[i];
-    }
-    return kept;
-}
-
-/* Finds the strongest summits, row by row; room for twice MAX_SUMMITS. */
-static int find_summits(const front_frame_t *frame, summit_t *summits)
-{
-    const front_layout_t *layout = &frame->layout;
-    int n = 0;
-    for (int scale = 0; scale < layout->scales; scale++) {
-        const image_t snr = at_scale(layout, frame->snr, scale);
-        const float wider =
-            greater((float)layout->cell[scale] / (float)layout->cell[1], 1.0F);
-        const float least_snr = (float)FRONT_MIN_SNR * wider;
-        const float worth = (float)CELL_SHARE * least_snr;
-        /* One in from the edge, so that a peak has neighbours on all sides. */
-        for (int y = 1; y < snr.rows - 1; y++) {
-            const float *row = row_of(snr, y);
-            for (int x = 1; x < snr.columns - 1; x++) {
-                const float centre = row[x];
-                if (!(centre > worth))
-                    continue;
-                float near[8];
-                look_around(row + x, snr.stride, 1, near);
-                /* Of equal cells the first is the top: the others come after.
-                 */
-                bool top = true;
-                for (int i = 0; i < 4; i++)
-                    top &= centre >= near[i] && centre > near[i + 4];
-                const float strength = brightest(centre, near);
-                if (!top || strength < least_snr)
-                    continue;
-                if (n == 2 * MAX_SUMMITS)
-                    n = keep_strongest(summits, n);
-                summits[n++] = (summit_t){
-                    .at = (int)(row + x - frame->snr),
-                    .scale = scale,
-                    .row = y,
-                    .column = x,
-                    .strength = strength,
-                    .centre = centre,
-                };
-            }
-        }
-    }
-    return keep_strongest(summits, n);
-}
-
-/* The least on the straight way between two cells. */
-static float lowest_between(const front_frame_t *frame, const summit_t *from,
-                            const summit_t *to)
-{
-    const int down = to->row - from->row, across = to->column - from->column;
-    float lowest = FLT_MAX;
-    for (int i = 1; i < PARTS; i++) {
-        const int y = (int)lrint(from->row + (double)(down * i) / PARTS);
-        const int x = (int)lrint(from->column + (double)(across * i) / PARTS);
-        const int off =
-            (y - from->row) * frame->layout.columns + x - from->column;
-        lowest = lesser(lowest, frame->snr[from->at + off]);
-    }
-    return lowest;
-}
-
-/* Joins each of n summits, which are in order of rows, to higher ones nearby.
- */
-static void find_saddles(const front_frame_t *frame, summit_t *summits, int n)
-{
-    for (int i = 0; i < n; i++) {
-        summit_t *one = &summits[i];
-        for (int j = i + 1; j < n; j++) {
-            summit_t *other = &summits[j];
-            const int down = other->row - one->row;
-            const int across = other->column - one->column;
-            if (other->scale != one->scale || down >= NEARBY)
-                break;
-            if (down * down + across * across >= NEARBY * NEARBY)
-                continue;
-            summit_t *low = one->centre < other->centre ? one : other;
-            const summit_t *high = low == one ? other : one;
-            if (high->centre > low->centre)
-                low->saddle =
-                    greater(low->saddle,
-                            lowest_between(frame, low, high) / low->centre);
-        }
-    }
-}
 
 /* For qsort(): the strongest first, of equal ones the first of the frame. */
 static int by_strength(const void *a, const void *b)
@@ -347,7 +206,7 @@ static void describe(const front_frame_t *frame, const summit_t *summit,
         exact[c] = (double)added[c];
     }
     const float excess = filtered(frame->weights + 3 * best,
-                                  is_clipped(light[0], light[1], light[2]),
+                                  least_weight(light[0], light[1], light[2]),
                                   added[0], added[1], added[2]);
     double *looks = peaks->looks + k * FRONT_LOOKS;
     look_at(frame, summit, looks);
@@ -363,8 +222,7 @@ void front_find(const front_frame_t *frame, const double *with_looks,
                 const double *without, front_peaks_t *peaks)
 {
     summit_t summits[2 * MAX_SUMMITS];
-    const int n = find_summits(frame, summits);
-    find_saddles(frame, summits, n);
+    const int n = summits_find(frame, summits);
     qsort(summits, (size_t)n, sizeof(summit_t), by_strength);
     memset(peaks->count, 0, sizeof(peaks->count));
     for (int i = 0; i < n; i++) {

@@ -25,15 +25,15 @@ typedef struct {
     image_t coarser[3];
     image_t snr;
     uint8_t *best;
-    bool *clipped;   /* of each row, whether it may have a clipped cell */
-    int hues;        /* filters that are looked through */
-    float *sums;     /* as many rows */
-    float *answer;   /* one row */
-    int *which;      /* one row */
-    place_t *places; /* one row */
-    float *coarse;   /* up to FRONT_HUES images of surrounds or of blocks */
-    float *drawn;    /* the same as wide as the scale */
-    float *spare;    /* room for smoothing one of the former */
+    bool *clipped; /* of each row, whether it may have a clipped cell */
+    int hues;      /* filters that are looked through */
+    float *sums;   /* as many rows */
+    float *shares; /* one row, also room for a sum of rows */
+    int *which;    /* one row */
+    float *least;  /* one row: the least weights that count */
+    float *coarse; /* up to FRONT_HUES images of surrounds or of blocks */
+    float *drawn;  /* the same as wide as the scale */
+    float *spare;  /* room for smoothing one of the former */
 } work_t;
 
 /* How many parts, about so many cells wide, n cells are divided into. */
@@ -65,7 +65,7 @@ static void draw_all_out(work_t *work, int wide, int images)
     image_t drawn = drawn_out(work->drawn, work->snr, wide, 0);
     coarse.rows *= images;
     drawn.rows *= images;
-    cells_draw_out(coarse, drawn, work->places);
+    cells_draw_out(coarse, drawn, work->shares);
 }
 
 /* The light that each cell adds to that of the water about it. */
@@ -74,7 +74,7 @@ WIDE_VECTORS static void take_surround_away(work_t *work, int wide)
     const image_t whole = work->snr;
     for (int c = 0; c < 3; c++)
         cells_shrink(work->coarser[c], parts_of(work->coarse, whole, wide, c),
-                     work->answer);
+                     work->shares);
     draw_all_out(work, wide, 3);
     for (int c = 0; c < 3; c++) {
         const image_t drawn = drawn_out(work->drawn, whole, wide, c);
@@ -95,28 +95,42 @@ WIDE_VECTORS static void take_surround_away(work_t *work, int wide)
     }
 }
 
-/* What a filter answers to a row. */
-WIDE_VECTORS static void answer_row(const work_t *work, int y,
-                                    const float weights[3],
-                                    float *restrict answer)
+/* The light that a row adds, and the least weights that count in its cells. */
+typedef struct {
+    const float *blue, *green, *red;
+    const float *least;
+} row_t;
+
+static inline row_t added_row(const work_t *work, int y)
 {
-    const float *restrict b = row_of(work->added[0], y);
-    const float *restrict g = row_of(work->added[1], y);
-    const float *restrict r = row_of(work->added[2], y);
-    const int columns = work->snr.columns;
-    if (!work->clipped[y]) {
-        for (int x = 0; x < columns; x++)
-            answer[x] = filtered(weights, false, b[x], g[x], r[x]);
-        return;
+    if (work->clipped[y]) {
+        const float *restrict blue = row_of(work->light[0], y);
+        const float *restrict green = row_of(work->light[1], y);
+        const float *restrict red = row_of(work->light[2], y);
+        float *restrict least = work->least;
+        for (int x = 0; x < work->snr.columns; x++)
+            least[x] = least_weight(blue[x], green[x], red[x]);
     }
-    const float *restrict blue = row_of(work->light[0], y);
-    const float *restrict green = row_of(work->light[1], y);
-    const float *restrict red = row_of(work->light[2], y);
-    for (int x = 0; x < columns; x++) {
-        const float whole = filtered(weights, false, b[x], g[x], r[x]);
-        const float part = filtered(weights, true, b[x], g[x], r[x]);
-        answer[x] = is_clipped(blue[x], green[x], red[x]) ? part : whole;
-    }
+    return (row_t){row_of(work->added[0], y), row_of(work->added[1], y),
+                   row_of(work->added[2], y), work->least};
+}
+
+/* What a filter answers to a cell of a row.  any_clipped: whether the row may
+ * have a clipped cell. */
+static inline float answer_at(const row_t *row, int x, bool any_clipped,
+                              const float weights[3])
+{
+    return filtered(weights, any_clipped ? row->least[x] : -FLT_MAX,
+                    row->blue[x], row->green[x], row->red[x]);
+}
+
+/* Adds a share of the size of what a filter answers to a row to sums. */
+static inline void add_sizes(const row_t *row, int columns, bool any_clipped,
+                             const float weights[3], float share,
+                             float *restrict sums)
+{
+    for (int x = 0; x < columns; x++)
+        sums[x] += share * fabsf(answer_at(row, x, any_clipped, weights));
 }
 
 /* The local fluctuation of each filter's answers, in work->drawn. */
@@ -131,12 +145,14 @@ WIDE_VECTORS static void measure_noise(work_t *work, const float (*weights)[3])
         memset(work->sums, 0, (size_t)(work->hues * columns) * sizeof(float));
         for (int y = span.first; y <= span.last; y++) {
             const float share = cells_share(&span, y);
+            const row_t row = added_row(work, y);
             for (int hue = 0; hue < work->hues; hue++) {
-                answer_row(work, y, weights[hue], work->answer);
-                const float *restrict answer = work->answer;
-                float *restrict sums = work->sums + hue * columns;
-                for (int x = 0; x < columns; x++)
-                    sums[x] += share * fabsf(answer[x]);
+                float *sums = work->sums + hue * columns;
+                /* Two loops, neither of which has to ask. */
+                if (work->clipped[y])
+                    add_sizes(&row, columns, true, weights[hue], share, sums);
+                else
+                    add_sizes(&row, columns, false, weights[hue], share, sums);
             }
         }
         for (int hue = 0; hue < work->hues; hue++) {
@@ -160,47 +176,66 @@ WIDE_VECTORS static void measure_noise(work_t *work, const float (*weights)[3])
     draw_all_out(work, BLOCK, work->hues);
 }
 
-/* What a filter answers to a row, in units of its noise.  p: where the row is
- * between those of blocks. */
-WIDE_VECTORS static void answer_in_noise(const work_t *work, int y, place_t p,
-                                         int hue, const float weights[3],
-                                         float *restrict answer)
+/* The local noise of a row, between that of the rows of blocks above and below
+ * it.  Those of the filters are so many numbers apart. */
+typedef struct {
+    const float *above, *below;
+    int apart;
+    float share;
+} noise_t;
+
+/* The largest of the filters' answers to a row over their noise, and whose it
+ * is. */
+static inline void keep_row(const row_t *row, int columns, bool any_clipped,
+                            int hues, const float (*weights)[3],
+                            const noise_t *noise, float unexpected,
+                            float *restrict snr, int *restrict which)
 {
-    const int columns = work->snr.columns;
-    const image_t drawn = drawn_out(work->drawn, work->snr, BLOCK, hue);
-    const float *restrict above = row_of(drawn, p.before);
-    const float *restrict below = row_of(drawn, p.after);
-    answer_row(work, y, weights, answer);
-    for (int x = 0; x < columns; x++)
-        answer[x] /= above[x] + p.share * (below[x] - above[x]);
+    for (int x = 0; x < columns; x++) {
+        float largest = 0;
+        int whose = 0;
+#pragma GCC unroll 6
+        for (int hue = 0; hue < hues; hue++) {
+            const float above = noise->above[hue * noise->apart + x];
+            const float below = noise->below[hue * noise->apart + x];
+            const float own = answer_at(row, x, any_clipped, weights[hue]) /
+                              (above + noise->share * (below - above));
+            const float counted = hue == 0 ? own : own - unexpected;
+            /* All bits, or none: a branch would keep the loop from being made
+             * of vector instructions. */
+            const int larger = -(hue == 0 || counted > largest);
+            whose = (whose & ~larger) | (hue & larger);
+            largest = hue == 0 ? counted : greater(counted, largest);
+        }
+        snr[x] = largest;
+        which[x] = whose;
+    }
 }
 
-/* The largest answer over its noise, and whose it is. */
+/* The largest answer over its noise, and whose it is, of all cells. */
 WIDE_VECTORS static void keep_largest(work_t *work, const float (*weights)[3],
                                       float unexpected)
 {
     const image_t whole = work->snr;
     const int columns = whole.columns;
-    int *restrict which = work->which;
+    const image_t drawn = drawn_out(work->drawn, whole, BLOCK, 0);
     for (int y = 0; y < whole.rows; y++) {
-        float *restrict snr = row_of(whole, y);
-        const place_t p = cells_place(y, whole.rows, parts(whole.rows, BLOCK));
-        answer_in_noise(work, y, p, 0, weights[0], snr);
-        memset(which, 0, (size_t)columns * sizeof(int));
-        for (int hue = 1; hue < work->hues; hue++) {
-            answer_in_noise(work, y, p, hue, weights[hue], work->answer);
-            const float *restrict answer = work->answer;
-            for (int x = 0; x < columns; x++) {
-                const float own = answer[x] - unexpected;
-                const float other = snr[x];
-                /* All bits, or none: a branch would keep the loop from being
-                 * made of vector instructions. */
-                const int larger = -(own > other);
-                which[x] = (which[x] & ~larger) | (hue & larger);
-                snr[x] = greater(own, other);
-            }
-        }
+        const place_t p = cells_place(y, whole.rows, drawn.rows);
+        const noise_t noise = {row_of(drawn, p.before), row_of(drawn, p.after),
+                               drawn.rows * columns, p.share};
+        const row_t row = added_row(work, y);
+        float *snr = row_of(whole, y);
         uint8_t *restrict best = work->best + y * whole.stride;
+        if (work->hues == 1)
+            keep_row(&row, columns, work->clipped[y], 1, weights, &noise,
+                     unexpected, snr, work->which);
+        else if (work->clipped[y])
+            keep_row(&row, columns, true, FRONT_HUES, weights, &noise,
+                     unexpected, snr, work->which);
+        else
+            keep_row(&row, columns, false, FRONT_HUES, weights, &noise,
+                     unexpected, snr, work->which);
+        const int *restrict which = work->which;
         for (int x = 0; x < columns; x++)
             best[x] = (uint8_t)which[x];
     }
@@ -232,20 +267,19 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
     const int coarse = FRONT_HUES * parts_down * parts_across;
     const int drawn = FRONT_HUES * parts_down * columns;
     const int spare = cells_smooth_room(parts_down, parts_across);
-    const int numbers = (FRONT_HUES + 1) * columns + coarse + drawn + spare;
+    const int numbers = (FRONT_HUES + 2) * columns + coarse + drawn + spare;
     float *floats = malloc((size_t)numbers * sizeof(float));
     int *which = malloc((size_t)columns * sizeof(int));
-    place_t *places = malloc((size_t)columns * sizeof(place_t));
     bool *clipped = calloc((size_t)work.snr.rows, sizeof(bool));
-    const bool enough = floats && which && places && clipped;
+    const bool enough = floats && which && clipped;
     if (enough) {
         work.sums = floats;
-        work.answer = work.sums + FRONT_HUES * columns;
-        work.coarse = work.answer + columns;
+        work.shares = work.sums + FRONT_HUES * columns;
+        work.least = work.shares + columns;
+        work.coarse = work.least + columns;
         work.drawn = work.coarse + coarse;
         work.spare = work.drawn + drawn;
         work.which = which;
-        work.places = places;
         work.clipped = clipped;
         const float (*weights)[3] = (const float (*)[3])frame->weights;
         take_surround_away(&work, wide);
@@ -255,15 +289,15 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
     }
     free(floats);
     free(which);
-    free(places);
     free(clipped);
     return enough;
 }
 
-int front_respond(front_frame_t *frame, const uint8_t *bgr, const float *linear,
-                  const double *signatures, float unexpected)
+int front_respond(front_frame_t *frame, const uint8_t *bgr, int pixels,
+                  const float *linear, const double *signatures,
+                  float unexpected)
 {
-    if (!light_make(frame, bgr, linear))
+    if (!light_make(frame, bgr, pixels, linear))
         return -1;
     filters_make(frame, signatures);
     for (int scale = 0; scale < frame->layout.scales; scale++) {

@@ -1,4 +1,4 @@
-"""Compare dockcore, numpy and the OpenCV on the path over all 2^24 colours.
+"""Compare dockcore, the host's own code and the OpenCV on the path over all 2^24 colours.
 
 Prints ``<OpenCV version> <colours compared> <differences>``; run by test_tables.py
 under each OpenCV.
@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from chromadock.colour.background import grey_bins
-from chromadock.colour.hsv import hsv_from_rgb as numpy_hsv
+from chromadock.colour.hsv import hsv_from_rgb as host_hsv
 from chromadock_firmware import hsv_from_rgb as c_hsv
 
 CHUNK = 1 << 20
@@ -35,14 +35,14 @@ def main(hue_range: int) -> None:
         index = np.arange(start, start + CHUNK, dtype=np.uint32)
         rgb = np.stack((index >> 16, index >> 8 & 255, index & 255), -1).astype(np.uint8)
         by_c = np.stack(c_hsv(rgb, hue_range), -1)
-        by_numpy = np.stack(numpy_hsv(rgb, hue_range)[:3], -1)
-        different += int((by_c != by_numpy).any(-1).sum())
+        by_host = np.stack(host_hsv(rgb, hue_range)[:3], -1)
+        different += int((by_c != by_host).any(-1).sum())
         if hue_range in CODES:
             by_opencv = cv2.cvtColor(rgb[None], CODES[hue_range])[0]
             different += int((by_c != by_opencv).any(-1).sum())
         else:
             different += int((by_c[:, 0] != exact_hue(rgb)).sum())
-            # The bins of the background step, whose grey comes from OpenCV in numpy.
+            # The bins of the background step, whose grey comes from OpenCV on the host.
             r, g, b = rgb.astype(np.int64).T
             grey = (9798 * r + 19235 * g + 3735 * b + 16384) >> 15
             different += int((grey_bins(rgb[None])[0] != grey * 5 >> 8).sum())

@@ -9,7 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock import method, method_tables
-from chromadock.colour.hsv import hsv_from_rgb, hue_cos, hue_of_vector, hue_sin, rgb_from_hsv
+from chromadock._native import ffi, lib
+from chromadock.colour.hsv import TABLES, hue_of_vector, pointer, rgb_from_hsv
+
+_SINE = pointer(method_tables.SINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +73,11 @@ def background_colour(
     bins = grey_bins(image)
     counts = np.bincount(bins.ravel(), minlength=method.GREY_BINS)
     fullest = int(np.argmax(counts))  # the first of equals: ties go to the darker
-    hue, saturation, value, chroma = hsv_from_rgb(
-        image.reshape(-1, 3).take(np.flatnonzero(bins == fullest), axis=0)
-    )
-    x = int((chroma * hue_cos(hue)).sum(dtype=np.int64))
-    y = int((chroma * hue_sin(hue)).sum(dtype=np.int64))
-    chroma_sum, saturation_sum, value_sum = (int(a.sum()) for a in (chroma, saturation, value))
+    sums = ffi.new("hue_sums_t *")
+    pixels = ffi.from_buffer("uint8_t[]", np.ascontiguousarray(image))
+    lib.hue_sum(TABLES, _SINE, pixels, pointer(bins), bins.size, fullest, sums)
+    x, y, chroma_sum = sums.x, sums.y, sums.chroma
+    saturation_sum, value_sum = sums.saturation, sums.value
 
     n, size = int(counts[fullest]), bins.size
     mean_saturation = (2 * saturation_sum + n) // (2 * n)

@@ -3,18 +3,36 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chromadock import method, method_tables
+from chromadock._native import ffi, lib
 
-# Steps a turn: the table that divides by chroma, and its fixed point.
-_HUE_SCALES = {
-    method.HUE_RANGE: (method_tables.HUE_DIVISION, method.HUE_SHIFT),
-    180: (method_tables.HUE_DIVISION_180, method.OPENCV_SHIFT),
-    256: (method_tables.HUE_DIVISION_256, method.OPENCV_SHIFT),
+
+def _tables(hue_range: int, by_chroma: NDArray[np.int32], shift: int) -> Any:
+    by_value = pointer(method_tables.SATURATION_DIVISION)
+    return ffi.new(
+        "hue_tables_t *", (hue_range, shift, pointer(by_chroma), method.OPENCV_SHIFT, by_value)
+    )
+
+
+def pointer(table: NDArray[np.int32]) -> Any:
+    """Where the numbers of a table are: valid for as long as the table itself is."""
+    return ffi.from_buffer("int32_t[]", table)
+
+
+# By steps a turn.
+_TABLES = {
+    method.HUE_RANGE: _tables(method.HUE_RANGE, method_tables.HUE_DIVISION, method.HUE_SHIFT),
+    180: _tables(180, method_tables.HUE_DIVISION_180, method.OPENCV_SHIFT),
+    256: _tables(256, method_tables.HUE_DIVISION_256, method.OPENCV_SHIFT),
 }
+
+TABLES = _TABLES[method.HUE_RANGE]
+"""Of the decision's own hues, for ``host/native/hue.h``."""
 
 
 def hsv_from_rgb(
@@ -34,17 +52,10 @@ def hsv_from_rgb(
     -------
     Four (...) int32: hue 0..hue_range-1, the others 0..255.
     """
-    r, g, b = (rgb[..., c].astype(np.int32) for c in range(3))
-    value = np.maximum(np.maximum(r, g), b)
-    chroma = value - np.minimum(np.minimum(r, g), b)
-    distance = np.where(
-        value == r, g - b, np.where(value == g, b - r + 2 * chroma, r - g + 4 * chroma)
-    )
-    division, shift = _HUE_SCALES[hue_range]
-    hue = (distance * division[chroma] + (1 << (shift - 1))) >> shift
-    hue = np.where(hue < 0, hue + hue_range, hue)
-    half = 1 << (method.OPENCV_SHIFT - 1)
-    saturation = (chroma * method_tables.SATURATION_DIVISION[value] + half) >> method.OPENCV_SHIFT
+    pixels = ffi.from_buffer("uint8_t[]", np.ascontiguousarray(rgb, np.uint8))
+    hsvc = np.empty((4, *rgb.shape[:-1]), np.int32)
+    lib.hue_of_pixels(_TABLES[hue_range], pixels, len(pixels) // 3, pointer(hsvc))
+    hue, saturation, value, chroma = (np.asarray(plane) for plane in hsvc)
     return hue, saturation, value, chroma
 
 

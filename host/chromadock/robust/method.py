@@ -76,7 +76,7 @@ class RobustMethod:
         watch.lap("pose")
         found = self._report(frame_bgr, best, peaks, response)
         misfit = max(measure.misfits, key=lambda m: m.evidence, default=None)
-        return found if best is not None else replace(found, misfit=misfit)
+        return found if best is not None or misfit is None else replace(found, misfit=misfit)
 
     def _view_of(self, camera: CameraModel) -> View:
         if self._view is None or not self._view.is_of(camera):

@@ -65,20 +65,26 @@ static inline bool is_clipped(float blue, float green, float red)
     return greater(blue, greater(green, red)) >= (float)FRONT_CLIPPED_LIGHT;
 }
 
-/* Added light through weights.  Where a channel may have been clipped the
- * negative ones do not count: that channel says only that there is as much or
- * more, and a lamp's core, which clips in more channels than its halo, would
- * otherwise be a hole in it. */
-static inline float filtered(const float weights[3], bool clipped, float blue,
-                             float green, float red)
+/* The least weight that counts in a cell.  Where a channel may have been
+ * clipped the negative ones do not: that channel says only that there is as
+ * much or more, and a lamp's core, which clips in more channels than its halo,
+ * would otherwise be a hole in it. */
+static inline float least_weight(float blue, float green, float red)
 {
-    const float none = clipped ? 0.0F : -FLT_MAX;
-    return greater(weights[0], none) * blue +
-           greater(weights[1], none) * green + greater(weights[2], none) * red;
+    return is_clipped(blue, green, red) ? 0.0F : -FLT_MAX;
 }
 
-/* Surrounds a scale of an image by its outermost cells; what is beyond the
- * border in the same rows becomes 0. */
+/* Added light through weights, which count as the least one where they are
+ * less. */
+static inline float filtered(const float weights[3], float least_one,
+                             float blue, float green, float red)
+{
+    return greater(weights[0], least_one) * blue +
+           greater(weights[1], least_one) * green +
+           greater(weights[2], least_one) * red;
+}
+
+/* Surrounds a scale of an image by its outermost cells. */
 void cells_repeat_outermost(const front_layout_t *layout, float *image,
                             int scale);
 
@@ -117,8 +123,8 @@ typedef struct {
 place_t cells_place(int i, int m, int n);
 
 /* Draws each row of a small image out linearly to the columns of a larger one
- * with as many rows.  places: room for one for each of those columns. */
-void cells_draw_out(image_t in, image_t out, place_t *restrict places);
+ * with as many rows.  shares: room for one number for each of those columns. */
+void cells_draw_out(image_t in, image_t out, float *restrict shares);
 
 /* Numbers that an image and so many more at both ends of a row need for
  * smoothing. */
@@ -134,7 +140,7 @@ float cells_kth_least(float *values, int n, int k);
 
 /* Fills in the light and the covariance of a frame, see front_respond(); false
  * if there is no memory. */
-bool light_make(const front_frame_t *frame, const uint8_t *bgr,
+bool light_make(const front_frame_t *frame, const uint8_t *bgr, int pixels,
                 const float *linear);
 
 /* Fills in the filters of a frame from its covariance, see front_respond(). */

@@ -58,6 +58,14 @@ static inline double same_colour(const peak_t *one, const peak_t *other)
     return student(apart, one->variance + other->variance);
 }
 
+/* Likelihood ratio that a peak has a marker's colour, which makes its chroma
+ * so dense, where clutter's is so dense; disturbed: how often a marker's colour
+ * is not the dock's. */
+static inline double colour_ratio(double disturbed, double same, double clutter)
+{
+    return (1 - disturbed) * same / clutter + disturbed;
+}
+
 static inline bool are_near(const frame_t *frame, const peak_t *one,
                             const peak_t *other)
 {
@@ -117,10 +125,6 @@ double evidence_rarity(const frame_t *frame, const peak_t *peak,
 double evidence_clutter_colour(const frame_t *frame, const peak_t *peak,
                                double everywhere, int32_t count, double nearby,
                                int32_t around);
-
-/* Likelihood ratio that a peak has a marker's colour, which makes its chroma
- * so dense, where clutter's is so dense. */
-double evidence_colour_ratio(const frame_t *frame, double same, double clutter);
 
 /* Log of the mean likelihood ratio of the clutter's looks, where `count` peaks'
  * add up to `ratios`.  Over clutter of all kinds that mean is 1; where the

@@ -106,7 +106,10 @@ def respond(
         raise ValueError(f"a frame has {MIN_SIDE} pixels or more each way")
     coarsest = min(focal_px * COARSEST_CELL_RAD, min(height, width) / 16)
     layout = Layout.of(height, width, coarsest)
-    finest = np.ascontiguousarray(frame_bgr if layout.cells[0] == 1 else _halved(frame_bgr))
+    pixels = layout.cells[0]
+    if pixels > 1 and (height % 2 or width % 2):
+        frame_bgr, pixels = _halved(frame_bgr), 1
+    picture = np.ascontiguousarray(frame_bgr)
     light = np.empty((3, *layout.shape), np.float32)
     added = np.empty_like(light)
     snr = np.empty(layout.shape, np.float32)
@@ -117,13 +120,14 @@ def respond(
     native = ffi.new("front_frame_t *", (layout.native[0], *map(pointer, arrays)))
     less = lib.FRONT_UNEXPECTED if preferred else 0.0
     signatures = _signatures(hue)
-    if lib.front_respond(native, pointer(finest), pointer(_LINEAR), pointer(signatures), less):
+    tables = pointer(_LINEAR), pointer(signatures)
+    if lib.front_respond(native, pointer(picture), pixels, *tables, less):
         raise MemoryError("no memory for a frame's response")
     return Response(weights, axes, covariance, layout, light, added, snr, best, native)
 
 
 def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Means of 2 x 2 pixels; an odd row or column is spread over the others."""
+    """Means of 2 x 2 pixels, where an odd row or column is spread over the others."""
     size = (image.shape[1] // 2, image.shape[0] // 2)
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
 

@@ -1,0 +1,145 @@
+#include "internal/searching.h"
+#include "internal/vectors.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* More than what rounding does to a sum of logarithms. */
+#define ROUNDING 1e-6
+
+/* Rarity of a peak at most, with any others in a set of so many. */
+static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
+{
+    const peak_t *peak = &frame->peaks[index];
+    int32_t others = size - 1, count = frame->count - size;
+    int32_t stronger = index > others ? index - others : 0;
+    int32_t nearby = peak->stronger > others ? peak->stronger - others : 0;
+    double strongest = count > 0 ? frame->peaks[size].height : 0;
+    double most = frame->heights - peak->height, least = frame->heights;
+    for (int32_t i = 0; i < size; i++)
+        least -= frame->peaks[i].height;
+    return larger(
+        evidence_rarity(frame, peak, stronger, nearby, count, most, strongest),
+        evidence_rarity(frame, peak, stronger, nearby, count, larger(least, 0),
+                        strongest));
+}
+
+/* Density of clutter's chroma at a peak at least: if all others in a set of so
+ * many are of its very colour and as well known as the strongest peak's. */
+static double least_clutter_colour(const frame_t *frame, const peak_t *peak,
+                                   int32_t size)
+{
+    double itself = same_colour(peak, peak);
+    double others =
+        (size - 1) * student(0, peak->variance + frame->peaks[0].variance);
+    return evidence_clutter_colour(
+        frame, peak, peak->everywhere - itself - others, frame->count - size,
+        peak->nearby - itself - others, peak->around - 1);
+}
+
+static int descending(const void *a, const void *b)
+{
+    double one = *(const double *)a, other = *(const double *)b;
+    return (one < other) - (one > other);
+}
+
+/* What the colour of each peak is worth if it is that of each other. */
+WIDE_VECTORS static void prepare_colours(search_t *search)
+{
+    const frame_t *frame = &search->frame;
+    const int32_t count = search->count, markers = search->dock->markers;
+    const double disturbed = frame->constants->colour_disturbed;
+    double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
+    double variance[SEARCH_MAX_PROMISING];
+    for (int32_t i = 0; i < count; i++) {
+        x[i] = peak_at(search, i)->chroma_x;
+        y[i] = peak_at(search, i)->chroma_y;
+        variance[i] = peak_at(search, i)->variance;
+        search->nearest_colour[i] = 1;
+    }
+    for (int32_t j = 0; j < count; j++) {
+        const double clutter =
+            least_clutter_colour(frame, peak_at(search, j), markers);
+        double *restrict ratios = search->colour[j];
+        double *restrict nearest = search->nearest_colour;
+        for (int32_t i = 0; i < count; i++) {
+            const double apart = square(x[i] - x[j]) + square(y[i] - y[j]);
+            const double same = student(apart, variance[i] + variance[j]);
+            const double ratio = colour_ratio(disturbed, same, clutter);
+            ratios[i] = i == j ? 1 : ratio;
+            nearest[i] = larger(nearest[i], ratios[i]);
+        }
+    }
+}
+
+void bounds_prepare(search_t *search)
+{
+    const frame_t *frame = &search->frame;
+    const evidence_constants_t *constants = frame->constants;
+    int32_t markers = search->dock->markers;
+    /* The clutter looks least like lamps without those that do most. */
+    double sorted[EVIDENCE_MAX_PEAKS] = {0}, ratios = frame->ratios;
+    for (int32_t i = 0; i < frame->count; i++)
+        sorted[i] = frame->peaks[i].ratio;
+    qsort(sorted, (size_t)frame->count, sizeof(double), descending);
+    for (int32_t i = 0; i < markers; i++)
+        ratios -= sorted[i];
+    double usual =
+        evidence_log_mean_ratio(frame, frame->count - markers, ratios);
+    for (int32_t i = 0; i < search->count; i++) {
+        search->rarity[i] = peak_at(search, i)->likeness - usual +
+                            most_rarity(frame, search->promising[i], markers);
+        search->rarest[i + 1] = search->rarity[i];
+    }
+    search->rarest[0] = 0;
+    qsort(search->rarest + 1, (size_t)search->count, sizeof(double),
+          descending);
+    for (int32_t i = 0; i < search->count; i++)
+        search->rarest[i + 1] += search->rarest[i];
+    prepare_colours(search);
+    for (int32_t i = 0; i < search->count; i++)
+        search->log_colours[i] = (markers - 1) * log(search->nearest_colour[i]);
+    /* Markers that no noise disturbs, all as strong, are as dense as any. */
+    double weight = 1 / square(constants->strength_spread), all = 0;
+    double log_density = 0.5 * log(weight / (2 * PI));
+    strengths_t strengths = {0};
+    for (int32_t k = 1; k <= markers; k++) {
+        add_strength(&strengths, 0, weight, log_density,
+                     search->dock->along[k - 1]);
+        all = evidence_log_alike(constants, &strengths);
+        search->strengths_left[k] = -all;
+    }
+    for (int32_t k = 1; k <= markers; k++)
+        search->strengths_left[k] += all;
+    search->strengths = all;
+}
+
+double bounds_most_looks(const search_t *search, int32_t k)
+{
+    double rarity = search->rarest[search->dock->markers - k];
+    double colour = search->log_colours[search->set[0]];
+    for (int32_t i = 0; i < k; i++) {
+        rarity += search->rarity[search->set[i]];
+        colour = larger(colour, search->log_colours[search->set[i]]);
+    }
+    return search->strengths + rarity + colour + ROUNDING;
+}
+
+double bounds_looks(const search_t *search, int32_t k,
+                    const strengths_t *strengths)
+{
+    int32_t others = search->dock->markers - k;
+    double rarity = search->rarest[others], colour = DBL_MIN;
+    for (int32_t i = 0; i < k; i++) {
+        double common = 1;
+        for (int32_t j = 0; j < k; j++)
+            common *= search->colour[search->set[j]][search->set[i]];
+        for (int32_t j = 0; j < others; j++)
+            common *= search->nearest_colour[search->set[i]];
+        colour = larger(colour, common);
+        rarity += search->rarity[search->set[i]];
+    }
+    return evidence_log_alike(search->frame.constants, strengths) +
+           search->strengths_left[k] + rarity + log(colour);
+}

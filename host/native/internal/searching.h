@@ -1,0 +1,60 @@
+/* What the sources that search for sets of peaks share. */
+#ifndef SEARCHING_H
+#define SEARCHING_H
+
+#include "../search.h"
+#include "weighing.h"
+
+/* Peaks here are the promising ones, numbered from 0. */
+typedef struct {
+    frame_t frame;
+    const search_dock_t *dock;
+    double least;
+    double log_places; /* of the frame's places and of the base's turns */
+    int32_t count;
+    const int32_t *promising;
+    double place_x[SEARCH_MAX_PROMISING], place_y[SEARCH_MAX_PROMISING];
+    /* Bounds, whatever the other members of a set are: of a peak's rarity and
+     * likeness; of the sum of so many peaks'; of the ratio that one peak's
+     * (first's) colour is the other's; and of that with any other. */
+    double rarity[SEARCH_MAX_PROMISING], rarest[SEARCH_MAX_PROMISING + 1];
+    double colour[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
+    double nearest_colour[SEARCH_MAX_PROMISING];
+    /* Of the log ratio of a set's colours, if this peak has the dock's. */
+    double log_colours[SEARCH_MAX_PROMISING];
+    /* Of the log density of the strengths of all markers. */
+    double strengths;
+    /* And of what all markers but the first k add to the log density of the
+     * strengths. */
+    double strengths_left[SEARCH_MAX_PROMISING + 1];
+    /* The set: the peaks taken for p, q, ..., and their b. */
+    int32_t set[SEARCH_MAX_PROMISING];
+    double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
+    /* Of all peaks: what b would be. */
+    double every_x[SEARCH_MAX_PROMISING], every_y[SEARCH_MAX_PROMISING];
+    int32_t weighed, most_weighed; /* sets, complete or not */
+    /* What was found, the best first. */
+    int32_t most_sets, found;
+    int32_t *members;
+    double *evidence, *looks;
+} search_t;
+
+static inline const peak_t *peak_at(const search_t *search, int32_t i)
+{
+    return &search->frame.peaks[search->promising[i]];
+}
+
+/* Fills in the bounds of a search, which has its frame and its peaks. */
+void bounds_prepare(search_t *search);
+
+/* What bounds_looks() is at most, told by what is known of each of the first k
+ * peaks alone. */
+double bounds_most_looks(const search_t *search, int32_t k);
+
+/* What strengths, rarity and colours of a set may come to at most, whose first
+ * k peaks are known: if the others are the rarest, and of the colour nearest
+ * to that of the one that has the dock's. */
+double bounds_looks(const search_t *search, int32_t k,
+                    const strengths_t *strengths);
+
+#endif

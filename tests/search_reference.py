@@ -15,7 +15,7 @@ from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, NEIGHBOURHOOD, Pea
 from chromadock.robust.weigh import chroma, clutter, evidence
 from chromadock.robust.weigh.shape import FACETS, ShapeModel, Window
 
-GATE = 18.0
+GATE = 40.0
 VAST = 1e7
 """Variance of a common strength of which next to nothing is known."""
 

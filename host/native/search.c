@@ -1,156 +1,7 @@
-#include "search.h"
+#include "internal/searching.h"
 
-#include "internal/weighing.h"
-
-#include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Peaks here are the promising ones, numbered from 0. */
-typedef struct {
-    frame_t frame;
-    const search_dock_t *dock;
-    double least;
-    double log_places; /* of the frame's places and of the base's turns */
-    int32_t count;
-    const int32_t *promising;
-    double place_x[SEARCH_MAX_PROMISING], place_y[SEARCH_MAX_PROMISING];
-    /* Bounds, whatever the other members of a set are: of a peak's rarity and
-     * likeness; of the sum of so many peaks'; of the ratio that one peak's
-     * (second's) colour is the other's; and of that with any other. */
-    double rarity[SEARCH_MAX_PROMISING], rarest[SEARCH_MAX_PROMISING + 1];
-    double colour[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
-    double nearest_colour[SEARCH_MAX_PROMISING];
-    /* And of what all markers but the first k add to the log density of the
-     * strengths. */
-    double strengths_left[SEARCH_MAX_PROMISING + 1];
-    /* The set: the peaks taken for p, q, ..., their b, and of the base: its
-     * displacement over its length squared. */
-    int32_t set[SEARCH_MAX_PROMISING];
-    double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
-    double base_x, base_y;
-    int32_t weighed, most_weighed; /* sets, complete or not */
-    /* What was found, the best first. */
-    int32_t most_sets, found;
-    int32_t *members;
-    double *evidence, *looks;
-} search_t;
-
-static const peak_t *peak_at(const search_t *search, int32_t i)
-{
-    return &search->frame.peaks[search->promising[i]];
-}
-
-/* Rarity of a peak at most, with any others in a set of so many. */
-static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
-{
-    const peak_t *peak = &frame->peaks[index];
-    int32_t others = size - 1, count = frame->count - size;
-    int32_t stronger = index > others ? index - others : 0;
-    int32_t nearby = peak->stronger > others ? peak->stronger - others : 0;
-    double strongest = count > 0 ? frame->peaks[size].height : 0;
-    double most = frame->heights - peak->height, least = frame->heights;
-    for (int32_t i = 0; i < size; i++)
-        least -= frame->peaks[i].height;
-    return larger(
-        evidence_rarity(frame, peak, stronger, nearby, count, most, strongest),
-        evidence_rarity(frame, peak, stronger, nearby, count, larger(least, 0),
-                        strongest));
-}
-
-/* Density of clutter's chroma at a peak at least: if all others in a set of so
- * many are of its very colour and as well known as the strongest peak's. */
-static double least_clutter_colour(const frame_t *frame, const peak_t *peak,
-                                   int32_t size)
-{
-    double itself = same_colour(peak, peak);
-    double others =
-        (size - 1) * student(0, peak->variance + frame->peaks[0].variance);
-    return evidence_clutter_colour(
-        frame, peak, peak->everywhere - itself - others, frame->count - size,
-        peak->nearby - itself - others, peak->around - 1);
-}
-
-static int descending(const void *a, const void *b)
-{
-    double one = *(const double *)a, other = *(const double *)b;
-    return (one < other) - (one > other);
-}
-
-static void prepare_bounds(search_t *search)
-{
-    const frame_t *frame = &search->frame;
-    const evidence_constants_t *constants = frame->constants;
-    int32_t markers = search->dock->markers;
-    /* The clutter looks least like lamps without those that do most. */
-    double sorted[EVIDENCE_MAX_PEAKS] = {0}, ratios = frame->ratios;
-    for (int32_t i = 0; i < frame->count; i++)
-        sorted[i] = frame->peaks[i].ratio;
-    qsort(sorted, (size_t)frame->count, sizeof(double), descending);
-    for (int32_t i = 0; i < markers; i++)
-        ratios -= sorted[i];
-    double usual =
-        evidence_log_mean_ratio(frame, frame->count - markers, ratios);
-    for (int32_t i = 0; i < search->count; i++) {
-        search->rarity[i] = peak_at(search, i)->likeness - usual +
-                            most_rarity(frame, search->promising[i], markers);
-        search->rarest[i + 1] = search->rarity[i];
-        search->nearest_colour[i] = 1;
-    }
-    search->rarest[0] = 0;
-    qsort(search->rarest + 1, (size_t)search->count, sizeof(double),
-          descending);
-    for (int32_t i = 0; i < search->count; i++)
-        search->rarest[i + 1] += search->rarest[i];
-    for (int32_t j = 0; j < search->count; j++) {
-        const peak_t *peak = peak_at(search, j);
-        double clutter = least_clutter_colour(frame, peak, markers);
-        for (int32_t i = 0; i < search->count; i++) {
-            double same = same_colour(peak_at(search, i), peak);
-            double ratio =
-                i == j ? 1 : evidence_colour_ratio(frame, same, clutter);
-            search->colour[i][j] = ratio;
-            search->nearest_colour[i] =
-                larger(search->nearest_colour[i], ratio);
-        }
-    }
-    /* Markers that no noise disturbs, all as strong, are as dense as any. */
-    double weight = 1 / square(constants->strength_spread), all = 0;
-    double log_density = 0.5 * log(weight / (2 * PI));
-    strengths_t strengths = {0};
-    for (int32_t k = 1; k <= markers; k++) {
-        add_strength(&strengths, 0, weight, log_density,
-                     search->dock->along[k - 1]);
-        all = evidence_log_alike(constants, &strengths);
-        search->strengths_left[k] = -all;
-    }
-    for (int32_t k = 1; k <= markers; k++)
-        search->strengths_left[k] += all;
-}
-
-/* What strengths, rarity and colours of a set may come to at most, whose first
- * k peaks are known: if the others are the rarest, and of the colour nearest
- * to that of the one that has the dock's. */
-static double hoped_looks(search_t *search, int32_t k,
-                          const strengths_t *strengths)
-{
-    int32_t others = search->dock->markers - k;
-    search->weighed++;
-    double rarity = search->rarest[others], colour = DBL_MIN;
-    for (int32_t i = 0; i < k; i++) {
-        const double *ratios = search->colour[search->set[i]];
-        double common = 1;
-        for (int32_t j = 0; j < k; j++)
-            common *= ratios[search->set[j]];
-        for (int32_t j = 0; j < others; j++)
-            common *= search->nearest_colour[search->set[i]];
-        colour = larger(colour, common);
-        rarity += search->rarity[search->set[i]];
-    }
-    return evidence_log_alike(search->frame.constants, strengths) +
-           search->strengths_left[k] + rarity + log(colour);
-}
 
 /* Keep the complete set with that log density of its places, if it is among
  * the best. */
@@ -244,9 +95,9 @@ static void take(search_t *search, int32_t k, int32_t i, double x, double y,
 /* Add all markers from the k-th on to a set, in a class of views.
  *
  * place: log density of the places if these markers are right where they are
- * expected; strengths: of the set. */
+ * expected; hoped: what all else may come to; strengths: of the set. */
 static void extend(search_t *search, int32_t k, int32_t class, double place,
-                   const strengths_t *strengths)
+                   double hoped, const strengths_t *strengths)
 {
     if (k == search->dock->markers) {
         keep(search, place);
@@ -261,15 +112,18 @@ static void extend(search_t *search, int32_t k, int32_t class, double place,
         double x = dx * search->base_x + dy * search->base_y;
         double y = dy * search->base_x - dx * search->base_y;
         double off = off_square(&expected, x, y);
-        if (off >= search->dock->gate || is_in_set(search, k, i))
+        double there = place - 0.5 * off;
+        if (off >= search->dock->gate || is_in_set(search, k, i) ||
+            there + search_hoped_with(search, hoped, k, i) < search->least)
             continue;
         if (search->weighed >= search->most_weighed)
             return;
-        double there = place - 0.5 * off;
+        search->weighed++;
         strengths_t sums = *strengths;
         take(search, k, i, x, y, &sums);
-        if (there + hoped_looks(search, k + 1, &sums) >= search->least)
-            extend(search, k + 1, class, there, &sums);
+        double looks = search_hoped(search, k + 1, &sums);
+        if (there + looks >= search->least)
+            extend(search, k + 1, class, there, looks, &sums);
     }
 }
 
@@ -303,41 +157,50 @@ static int32_t views_from(const search_t *search, int32_t from,
     return count;
 }
 
-/* Search all sets with a base and a third marker, at x + iy as seen from it. */
-static void search_third(search_t *search, const view_t *base, int32_t span,
-                         int32_t third, double x, double y)
+/* Take two peaks for the base: returns the log density of the places of all
+ * markers, but for their shape.  The base is even in log length and normal in
+ * direction; each marker's place is as much denser than its b as the base
+ * squared is small. */
+static double take_base(search_t *search, const view_t *base,
+                        strengths_t *strengths)
 {
     const search_dock_t *dock = search->dock;
-    double looks = 0, place = 0;
+    double turned = atan2(base->across, base->along) / dock->roll_rad;
+    take(search, 0, search->set[0], 0, 0, strengths);
+    take(search, 1, base->peak, 1, 0, strengths);
+    return -search->log_places - (dock->markers - 1) * log(base->square) -
+           0.5 * square(turned);
+}
+
+/* Search all sets with a base and a third marker, at x + iy as seen from it.
+ *
+ * place: log density of the places but for the shape; hoped: what all else may
+ * come to; pair: strengths of the base. */
+static void search_third(search_t *search, double place, double hoped,
+                         const strengths_t *pair, int32_t span, int32_t third,
+                         double x, double y)
+{
+    const search_dock_t *dock = search->dock;
+    double most = place + search_hoped_with(search, hoped, 2, third), looks = 0;
     bool known = false;
-    strengths_t strengths = {0};
+    strengths_t strengths = *pair;
     for (int32_t facet = 0; facet < dock->facets; facet++) {
         int32_t class = span * dock->facets + facet;
         expected_t expected = expect(search, 2, class);
         double off = off_square(&expected, x, y);
-        if (off >= dock->gate)
+        double shape = dock->log_norm[class] - 0.5 * off;
+        if (off >= dock->gate || most + shape < search->least)
             continue;
         if (search->weighed >= search->most_weighed)
             return;
         if (!known) {
             known = true;
-            /* The base is even in log length and normal in direction; each
-             * marker's place is as much denser than its b as the base squared
-             * is small. */
-            place =
-                -search->log_places - (dock->markers - 1) * log(base->square);
-            take(search, 0, search->set[0], 0, 0, &strengths);
-            take(search, 1, base->peak, 1, 0, &strengths);
+            search->weighed++;
             take(search, 2, third, x, y, &strengths);
-            looks = hoped_looks(search, 3, &strengths);
+            looks = search_hoped(search, 3, &strengths);
         }
-        double there = place + dock->log_norm[class] - 0.5 * off;
-        if (there + looks < search->least)
-            continue;
-        double turned = atan2(base->across, base->along) / dock->roll_rad;
-        there -= 0.5 * square(turned);
-        if (there + looks >= search->least)
-            extend(search, 3, class, there, &strengths);
+        if (place + shape + looks >= search->least)
+            extend(search, 3, class, place + shape, looks, &strengths);
     }
 }
 
@@ -358,6 +221,9 @@ static void search_from(search_t *search, int32_t p)
                square(dock->edges[span]) < base->square)
             span++;
         const search_box_t *box = &dock->thirds[span];
+        strengths_t pair = {0};
+        double place = 0, hoped = 0;
+        bool taken = false;
         search->base_x = base->x / base->square;
         search->base_y = base->y / base->square;
         for (int32_t j = 0; j < sides_count; j++) {
@@ -368,8 +234,16 @@ static void search_from(search_t *search, int32_t p)
              * foretell. */
             const int inside = (x > box->left) & (x < box->right) &
                                (y > box->top) & (y < box->bottom);
-            if (inside && side->peak != base->peak)
-                search_third(search, base, span, side->peak, x, y);
+            if (!inside || side->peak == base->peak)
+                continue;
+            if (!taken) {
+                taken = true;
+                place = take_base(search, base, &pair);
+                hoped = search_hoped(search, 2, &pair);
+                if (place + dock->densest[span] + hoped < search->least)
+                    break;
+            }
+            search_third(search, place, hoped, &pair, span, side->peak, x, y);
         }
     }
 }
@@ -401,7 +275,7 @@ int32_t search_find(const evidence_constants_t *constants,
     search.members = members;
     search.evidence = evidence;
     search.looks = looks;
-    prepare_bounds(&search);
+    search_prepare_bounds(&search);
     for (int32_t i = 0; i < search.count; i++) {
         search.place_x[i] = peak_at(&search, i)->x;
         search.place_y[i] = peak_at(&search, i)->y;

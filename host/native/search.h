@@ -17,7 +17,7 @@
 
 #include "evidence.h"
 
-/* More are refused; at most 70 kB of stack are used. */
+/* More are refused; at most 110 kB of stack are used. */
 enum { SEARCH_MAX_PROMISING = 64 };
 
 /* Where one marker is seen from another: its displacement d is at least
@@ -55,6 +55,7 @@ typedef struct {
     const double *edges;    /* spans - 1 lengths between them, pixels */
     const double *log_norm; /* spans x facets: log of the facet's share in the
                              * span, times the density of b at its peak */
+    const double *densest;  /* spans: the largest log_norm of each */
     const double *offset;   /* spans x facets x 2m: minus W times the mean */
     const double *whiten;   /* spans x facets x 2m x 2m: W, lower triangular;
                              * Re b_3, Im b_3, Re b_4, ... */
@@ -71,7 +72,7 @@ typedef struct {
  * members: receives most_sets x n indices of peaks, those of p, q, the third...
  * evidence, looks: receive most_sets values each, the best set first: all of
  * the evidence, and the part of it that evidence_of_sets gives.
- * weighed: receives how many sets were weighed.
+ * weighed: receives how many sets of three markers or more were weighed.
  * Returns the number of sets found, which all differ; -1 if there are too many
  * peaks. */
 int32_t search_find(const evidence_constants_t *constants,

@@ -170,8 +170,8 @@ def _estimates(sighting: Sighting) -> tuple[Estimate, ...]:
     """The same of markers about the origin."""
     if len(sighting.pixels) == 3:
         return _of_three(sighting)
-    start = _first_guess(sighting)
-    first = None if start is None else _refined(sighting, *start)
+    starts = filter(None, (guess(sighting) for guess in (_first_guess, _face_on)))
+    first = next(filter(None, (_refined(sighting, *start) for start in starts)), None)
     if first is None:
         return ()
     second = _refined(sighting, _tilted_back(first, sighting.points_dock), first.t)
@@ -314,6 +314,27 @@ def _first_guess(
         flags=cv2.SOLVEPNP_IPPE if planar else cv2.SOLVEPNP_EPNP,
     )
     return next(iter(flat.poses(rotations, translations)), None)
+
+
+def _face_on(sighting: Sighting) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """The pose of a dock, its centroid the origin, that faces the camera: roll and size fit best.
+
+    From there the way leads to the pose of markers that lie in a plane which is seen from its
+    edge, where solvers for planes fail: of nearly straight lines, level with the camera.
+    """
+    flat = _Flat.of(sighting.camera, sighting.pixels)
+    if flat is None:
+        return None
+    dock = _centred(sighting.points_dock)[:, :2] @ (1, 1j)
+    seen = flat.places @ (1, 1j)
+    middle = seen.mean()
+    # Least squares: seen - middle = size * dock, the size a complex number that turns as well.
+    size = np.vdot(dock, seen - middle) / max(np.vdot(dock, dock).real, 1e-12)
+    if not abs(size) > 0:
+        return None
+    place = np.array([middle.real, middle.imag, 1.0]) / abs(size)
+    roll = _matrix(np.array([0.0, 0.0, np.angle(size)]))
+    return flat.R_camera_flat @ roll, flat.R_camera_flat @ place
 
 
 @dataclass(frozen=True, eq=False, slots=True)

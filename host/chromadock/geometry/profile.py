@@ -25,6 +25,7 @@ _MOST_TURN_RAD = 0.7
 _TILTS = 2  # a plane's; the third turn, roll, is seen directly
 _ROUNDS = 2  # of refitting
 _STIFFNESS, _DAMPING = 1e6, 1e-10  # of the turn that is held and of all: traces of the information
+_RAN_AWAY = 1e8  # times the information: a marker is ten thousand times nearer than it was
 _REGION = 12.6  # chi-square with six degrees of freedom, 95%: farther turns do not count
 _LEAST_RISE = 4.0  # two standard deviations: what rises less says no more than that it may be true
 
@@ -61,21 +62,27 @@ def _profile(
     angles: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Steps (M, 6) away and chi-square (M,) after turns by ``angles`` (M,) about ``axes``
-    (M, 3), units, all else refitted."""
+    (M, 3), units, all else refitted.  A refit that ran away, until a marker was next to the lens,
+    has an infinite chi-square."""
     R = rotations(angles[:, None] * axes) @ estimate.R
     t = np.tile(estimate.t, (len(angles), 1))
     # Along the axis a refit must not turn: there it is held as by a very good measurement.
     held = np.zeros((len(angles), 6, 6))
     held[:, 3:, 3:] = axes[:, :, None] * axes[:, None, :]
+    most = _RAN_AWAY * float(np.trace(estimate.information))
+    lost = np.zeros(len(angles), bool)
     for _ in range(_ROUNDS):
         error, jacobian = errors(sighting, R, t)
         normal = jacobian.transpose(0, 2, 1) @ jacobian
-        trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
         gradient = jacobian.transpose(0, 2, 1) @ error[..., None]
+        lost |= ~(np.trace(normal, axis1=1, axis2=2) < most)
+        normal[lost], gradient[lost] = np.eye(6), 0.0
+        trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
         damped = normal + trace * (_STIFFNESS * held + _DAMPING * np.eye(6))
         step = -np.linalg.solve(damped, gradient)[..., 0]
         t = t + step[:, :3]
         R = rotations(step[:, 3:]) @ R
     error, _ = errors(sighting, R, t)
     turned = rotation_vectors(R @ estimate.R.T)
-    return np.column_stack([t - estimate.t, turned]), (error**2).sum(axis=1)
+    chi_square = np.where(lost, np.inf, (error**2).sum(axis=1))
+    return np.column_stack([t - estimate.t, turned]), chi_square

@@ -80,6 +80,19 @@ def test_a_dock_with_depth_straight_ahead_always_has_a_pose() -> None:
         assert found[0].chi_square < best.chi_square + 0.1
 
 
+@pytest.mark.parametrize("range_m", [1.0, 2.0, 4.0])
+def test_a_nearly_straight_line_of_markers_always_has_a_pose(range_m: float) -> None:
+    """Its markers lie in a plane that is seen from its edge, where solvers for planes fail."""
+    line = np.array([(-0.45, 0, 0.09), (-0.15, 0, 0), (0.15, 0, 0), (0.45, 0, 0.09)])
+    rng = np.random.default_rng(1)
+    for _ in range(60):
+        R = rotation(*rng.uniform(-1, 1, 3) * (15, 40, 20))
+        t = np.array([*rng.uniform(-0.1, 0.1, 2), 1.0]) * range_m
+        poses = estimates(sighting(line, R, t, 0.2, rng))
+        assert poses
+        assert min(pose.distance(R, t) for pose in poses) < 30
+
+
 def test_a_search_that_was_cut_short_is_no_second_pose() -> None:
     """It would stand close to the first, and fit worse."""
     rng = np.random.default_rng(31)

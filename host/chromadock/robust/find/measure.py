@@ -20,6 +20,7 @@ from chromadock.robust.frame.plateau import on_one_thing
 from chromadock.robust.frame.refine import Tops, refined
 from chromadock.robust.frame.response import Response
 from chromadock.robust.weigh.acceptance import (
+    GAIN_OF_EXACT,
     LEAST_EVIDENCE,
     LEAST_FOR_A_TRACK,
     LIKELY,
@@ -43,6 +44,9 @@ for another reason, and neither the dock's file nor the calibration would mend i
 
 MAX_CHOICES = 3
 """Places of each of four markers that are tried in every combination; of more markers two."""
+
+SAME_PLACE_PX = 4.0
+"""Of exact places: two that are nearer than this to each other are one lamp."""
 
 SAME_ERROR = 0.05
 """Share by which markers' errors may grow and the poses stay as they are fitted."""
@@ -73,7 +77,7 @@ class Measure:
             # Where no likely one is the dock one more is worth the time.
             if accepted and candidate.evidence < LIKELY:
                 break
-            if any(_overlap(candidate.xy, c.xy, candidate.cell) for c in accepted):
+            if any(_outdone(candidate, c) for c in accepted):
                 continue
             constellation = self._accepted(candidate)
             if constellation is not None:
@@ -81,7 +85,9 @@ class Measure:
         if not accepted:
             return None
         best = max(accepted, key=lambda c: c.evidence)
-        originals = [c for c in accepted if is_image_of(best, c, self.view.camera)]
+        # No lamp is a lamp of the image, too.
+        others = [c for c in accepted if not _shared(best.xy, c.xy, SAME_PLACE_PX).any()]
+        originals = [c for c in others if is_image_of(best, c, self.view.camera)]
         return max(originals, key=lambda c: c.evidence) if originals else best
 
     def about(self, priors: tuple[Estimate, ...], peaks: dict[int, Peaks]) -> Constellation | None:
@@ -263,6 +269,14 @@ def _downhill(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimat
     return tuple(sorted(found, key=lambda pose: pose.chi_square)) or estimates(sighting)
 
 
-def _overlap(a: NDArray[np.float64], b: NDArray[np.float64], cell: int) -> bool:
-    """Whether two sets of places share one, within two cells."""
-    return bool((np.linalg.norm(a[:, None] - b[None], axis=2) < 2 * cell).any())
+def _outdone(candidate: Candidate, accepted: Constellation) -> bool:
+    """Whether a candidate has a place in common with an accepted set and is that set again, seen
+    in cells of another size, or cannot have as much evidence even with exact places."""
+    shared = _shared(candidate.xy, accepted.xy, 2 * candidate.cell)
+    hopeless = candidate.evidence + GAIN_OF_EXACT < accepted.evidence
+    return bool(shared.all() or (shared.any() and hopeless))
+
+
+def _shared(a: NDArray[np.float64], b: NDArray[np.float64], near_px: float) -> NDArray[np.bool_]:
+    """(n,) which of the places (n, 2) are also among (m, 2) others."""
+    return np.asarray((np.linalg.norm(a[:, None] - b[None], axis=2) < near_px).any(axis=1))

@@ -27,10 +27,12 @@ LIKELY = LEAST_EVIDENCE - float(np.log(1.5))
 """Evidence, before places are exact, of what is likely to have enough with them; measuring is the
 dearest step."""
 
-HOPEFUL = LEAST_EVIDENCE - float(3 * np.log(10))
-"""The same of the best that is not likely, which is measured where no likely one is the dock.  The
-search knows places to a quarter of a cell and shapes by a normal distribution; exact places may add
-three decades, most to a near dock that is turned far."""
+GAIN_OF_EXACT = float(3 * np.log(10))
+"""What exact places may add to the search's evidence, which knows places to a quarter of a cell and
+shapes by a normal distribution: most to a near dock that is turned far."""
+
+HOPEFUL = LEAST_EVIDENCE - GAIN_OF_EXACT
+"""The same of the best that is not likely, which is measured where no likely one is the dock."""
 
 PLACE_TOLERANCE = 0.05
 """Of the range: a pose whose place is farther off is wrong."""

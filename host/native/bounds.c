@@ -9,7 +9,8 @@
 #define ROUNDING 1e-6
 
 /* Rarity of a peak at most, with any others in a set of so many. */
-static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
+static double most_rarity(const evidence_frame_t *frame, int32_t index,
+                          int32_t size)
 {
     const peak_t *peak = &frame->peaks[index];
     int32_t others = size - 1, count = frame->count - size;
@@ -27,8 +28,8 @@ static double most_rarity(const frame_t *frame, int32_t index, int32_t size)
 
 /* Density of clutter's chroma at a peak at least: if all others in a set of so
  * many are of its very colour and as well known as the strongest peak's. */
-static double least_clutter_colour(const frame_t *frame, const peak_t *peak,
-                                   int32_t size)
+static double least_clutter_colour(const evidence_frame_t *frame,
+                                   const peak_t *peak, int32_t size)
 {
     double itself = same_colour(peak, peak);
     double others =
@@ -45,24 +46,25 @@ static int descending(const void *a, const void *b)
 }
 
 /* What the colour of each peak is worth if it is that of each other. */
-WIDE_VECTORS static void prepare_colours(search_t *search)
+WIDE_VECTORS static void prepare_colours(search_bounds_t *bounds)
 {
-    const frame_t *frame = &search->frame;
-    const int32_t count = search->count, markers = search->dock->markers;
+    const evidence_frame_t *frame = bounds->frame;
+    const int32_t count = bounds->count, markers = bounds->markers;
     const double disturbed = frame->constants->colour_disturbed;
     double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
     double variance[SEARCH_MAX_PROMISING];
     for (int32_t i = 0; i < count; i++) {
-        x[i] = peak_at(search, i)->chroma_x;
-        y[i] = peak_at(search, i)->chroma_y;
-        variance[i] = peak_at(search, i)->variance;
-        search->nearest_colour[i] = 1;
+        const peak_t *peak = &frame->peaks[bounds->promising[i]];
+        x[i] = peak->chroma_x;
+        y[i] = peak->chroma_y;
+        variance[i] = peak->variance;
+        bounds->nearest_colour[i] = 1;
     }
     for (int32_t j = 0; j < count; j++) {
-        const double clutter =
-            least_clutter_colour(frame, peak_at(search, j), markers);
-        double *restrict ratios = search->colour[j];
-        double *restrict nearest = search->nearest_colour;
+        const double clutter = least_clutter_colour(
+            frame, &frame->peaks[bounds->promising[j]], markers);
+        double *restrict ratios = bounds->colour[j];
+        double *restrict nearest = bounds->nearest_colour;
         for (int32_t i = 0; i < count; i++) {
             const double apart = square(x[i] - x[j]) + square(y[i] - y[j]);
             const double same = student(apart, variance[i] + variance[j]);
@@ -71,13 +73,30 @@ WIDE_VECTORS static void prepare_colours(search_t *search)
             nearest[i] = larger(nearest[i], ratios[i]);
         }
     }
+    bounds->most_log_colours = 0;
+    for (int32_t i = 0; i < count; i++) {
+        bounds->log_colours[i] = (markers - 1) * log(bounds->nearest_colour[i]);
+        bounds->most_log_colours =
+            larger(bounds->most_log_colours, bounds->log_colours[i]);
+    }
 }
 
-void bounds_prepare(search_t *search)
+size_t search_bounds_size(void)
 {
-    const frame_t *frame = &search->frame;
-    const evidence_constants_t *constants = frame->constants;
-    int32_t markers = search->dock->markers;
+    return sizeof(search_bounds_t);
+}
+
+int32_t search_prepare(search_bounds_t *bounds, const evidence_frame_t *frame,
+                       int32_t markers, int32_t promising_count,
+                       const int32_t *promising)
+{
+    if (promising_count > SEARCH_MAX_PROMISING)
+        return -1;
+    bounds->frame = frame;
+    bounds->markers = markers;
+    bounds->count = promising_count;
+    if (promising_count < markers)
+        return 0;
     /* The clutter looks least like lamps without those that do most. */
     double sorted[EVIDENCE_MAX_PEAKS] = {0}, ratios = frame->ratios;
     for (int32_t i = 0; i < frame->count; i++)
@@ -87,19 +106,28 @@ void bounds_prepare(search_t *search)
         ratios -= sorted[i];
     double usual =
         evidence_log_mean_ratio(frame, frame->count - markers, ratios);
-    for (int32_t i = 0; i < search->count; i++) {
-        search->rarity[i] = peak_at(search, i)->likeness - usual +
-                            most_rarity(frame, search->promising[i], markers);
-        search->rarest[i + 1] = search->rarity[i];
+    for (int32_t i = 0; i < promising_count; i++) {
+        const peak_t *peak = &frame->peaks[promising[i]];
+        bounds->promising[i] = promising[i];
+        bounds->place_x[i] = peak->x;
+        bounds->place_y[i] = peak->y;
+        bounds->rarity[i] =
+            peak->likeness - usual + most_rarity(frame, promising[i], markers);
+        bounds->rarest[i + 1] = bounds->rarity[i];
     }
-    search->rarest[0] = 0;
-    qsort(search->rarest + 1, (size_t)search->count, sizeof(double),
+    bounds->rarest[0] = 0;
+    qsort(bounds->rarest + 1, (size_t)promising_count, sizeof(double),
           descending);
-    for (int32_t i = 0; i < search->count; i++)
-        search->rarest[i + 1] += search->rarest[i];
-    prepare_colours(search);
-    for (int32_t i = 0; i < search->count; i++)
-        search->log_colours[i] = (markers - 1) * log(search->nearest_colour[i]);
+    for (int32_t i = 0; i < promising_count; i++)
+        bounds->rarest[i + 1] += bounds->rarest[i];
+    prepare_colours(bounds);
+    return 0;
+}
+
+void bounds_of_strengths(search_t *search)
+{
+    const evidence_constants_t *constants = search->bounds->frame->constants;
+    const int32_t markers = search->dock->markers;
     /* Markers that no noise disturbs, all as strong, are as dense as any. */
     double weight = 1 / square(constants->strength_spread), all = 0;
     double log_density = 0.5 * log(weight / (2 * PI));
@@ -117,29 +145,38 @@ void bounds_prepare(search_t *search)
 
 double bounds_most_looks(const search_t *search, int32_t k)
 {
-    double rarity = search->rarest[search->dock->markers - k];
-    double colour = search->log_colours[search->set[0]];
+    const search_bounds_t *bounds = search->bounds;
+    double rarity = bounds->rarest[bounds->markers - k];
+    double colour = bounds->log_colours[search->set[0]];
     for (int32_t i = 0; i < k; i++) {
-        rarity += search->rarity[search->set[i]];
-        colour = larger(colour, search->log_colours[search->set[i]]);
+        rarity += bounds->rarity[search->set[i]];
+        colour = larger(colour, bounds->log_colours[search->set[i]]);
     }
     return search->strengths + rarity + colour + ROUNDING;
+}
+
+double bounds_beside(const search_t *search, int32_t k)
+{
+    const search_bounds_t *bounds = search->bounds;
+    return search->strengths + bounds->rarest[bounds->markers - k] +
+           bounds->most_log_colours + ROUNDING;
 }
 
 double bounds_looks(const search_t *search, int32_t k,
                     const strengths_t *strengths)
 {
-    int32_t others = search->dock->markers - k;
-    double rarity = search->rarest[others], colour = DBL_MIN;
+    const search_bounds_t *bounds = search->bounds;
+    int32_t others = bounds->markers - k;
+    double rarity = bounds->rarest[others], colour = DBL_MIN;
     for (int32_t i = 0; i < k; i++) {
         double common = 1;
         for (int32_t j = 0; j < k; j++)
-            common *= search->colour[search->set[j]][search->set[i]];
+            common *= bounds->colour[search->set[j]][search->set[i]];
         for (int32_t j = 0; j < others; j++)
-            common *= search->nearest_colour[search->set[i]];
+            common *= bounds->nearest_colour[search->set[i]];
         colour = larger(colour, common);
-        rarity += search->rarity[search->set[i]];
+        rarity += bounds->rarity[search->set[i]];
     }
-    return evidence_log_alike(search->frame.constants, strengths) +
+    return evidence_log_alike(bounds->frame->constants, strengths) +
            search->strengths_left[k] + rarity + log(colour);
 }

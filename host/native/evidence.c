@@ -7,7 +7,7 @@
 #include <stddef.h>
 
 /* What is known of a peak by itself. */
-static void describe(peak_t *peak, const frame_t *frame,
+static void describe(peak_t *peak, const evidence_frame_t *frame,
                      const evidence_peaks_t *peaks, int32_t i)
 {
     const evidence_constants_t *constants = frame->constants;
@@ -69,11 +69,18 @@ static inline void compare(columns_t *restrict all, int32_t i,
     peak->stronger = (int32_t)stronger;
 }
 
-WIDE_VECTORS void evidence_prepare(frame_t *frame,
-                                   const evidence_constants_t *constants,
-                                   const evidence_peaks_t *peaks)
+size_t evidence_frame_size(void)
+{
+    return sizeof(evidence_frame_t);
+}
+
+WIDE_VECTORS int32_t evidence_prepare(evidence_frame_t *frame,
+                                      const evidence_constants_t *constants,
+                                      const evidence_peaks_t *peaks)
 {
     columns_t all;
+    if (peaks->count > EVIDENCE_MAX_PEAKS)
+        return -1;
     frame->constants = constants;
     frame->count = peaks->count;
     frame->area = peaks->area;
@@ -96,6 +103,7 @@ WIDE_VECTORS void evidence_prepare(frame_t *frame,
         frame->peaks[i].nearby = all.nearby[i];
         frame->peaks[i].around = (int32_t)all.around[i];
     }
+    return 0;
 }
 
 double evidence_log_alike(const evidence_constants_t *constants,
@@ -111,7 +119,7 @@ double evidence_log_alike(const evidence_constants_t *constants,
            0.5 * log(determinant * square(scale) / (2 * PI));
 }
 
-double evidence_rarity(const frame_t *frame, const peak_t *peak,
+double evidence_rarity(const evidence_frame_t *frame, const peak_t *peak,
                        int32_t stronger, int32_t nearby, int32_t count,
                        double total, double strongest)
 {
@@ -130,9 +138,9 @@ double evidence_rarity(const frame_t *frame, const peak_t *peak,
     return -log(a / (b + height) * density);
 }
 
-double evidence_clutter_colour(const frame_t *frame, const peak_t *peak,
-                               double everywhere, int32_t count, double nearby,
-                               int32_t around)
+double evidence_clutter_colour(const evidence_frame_t *frame,
+                               const peak_t *peak, double everywhere,
+                               int32_t count, double nearby, int32_t around)
 {
     double supposed = frame->constants->colour_supposed;
     double overall = (larger(everywhere, 0) + supposed * peak->supposed) /
@@ -141,7 +149,7 @@ double evidence_clutter_colour(const frame_t *frame, const peak_t *peak,
 }
 
 /* Sum of the rarities of a set, whose members are no clutter. */
-static double set_rarity(const frame_t *frame, int32_t size,
+static double set_rarity(const evidence_frame_t *frame, int32_t size,
                          const int32_t *members)
 {
     int32_t stronger[EVIDENCE_MAX_PEAKS], nearby[EVIDENCE_MAX_PEAKS], first = 0;
@@ -170,7 +178,7 @@ static double set_rarity(const frame_t *frame, int32_t size,
 
 /* Log likelihood ratio that a set has one colour in common: of the mean of the
  * ratios with each member for the one that has the dock's. */
-static double set_colour(const frame_t *frame, int32_t size,
+static double set_colour(const evidence_frame_t *frame, int32_t size,
                          const int32_t *members)
 {
     double clutter[EVIDENCE_MAX_PEAKS], sum = 0;
@@ -203,7 +211,7 @@ static double set_colour(const frame_t *frame, int32_t size,
     return log(sum / size);
 }
 
-double evidence_log_mean_ratio(const frame_t *frame, int32_t count,
+double evidence_log_mean_ratio(const evidence_frame_t *frame, int32_t count,
                                double ratios)
 {
     double supposed = frame->constants->likeness_supposed;
@@ -211,7 +219,7 @@ double evidence_log_mean_ratio(const frame_t *frame, int32_t count,
                (supposed + (count > 0 ? count : 0)));
 }
 
-double evidence_of_set(const frame_t *frame, int32_t size,
+double evidence_of_set(const evidence_frame_t *frame, int32_t size,
                        const int32_t *members, const double *along)
 {
     strengths_t strengths = {0};
@@ -229,17 +237,14 @@ double evidence_of_set(const frame_t *frame, int32_t size,
            set_rarity(frame, size, members) + set_colour(frame, size, members);
 }
 
-int32_t evidence_of_sets(const evidence_constants_t *constants,
-                         const evidence_peaks_t *peaks, int32_t sets,
+int32_t evidence_of_sets(const evidence_frame_t *frame, int32_t sets,
                          int32_t size, const int32_t *members,
                          const double *along, double *evidence)
 {
-    frame_t frame;
-    if (peaks->count > EVIDENCE_MAX_PEAKS || size > peaks->count)
+    if (size > frame->count)
         return -1;
-    evidence_prepare(&frame, constants, peaks);
     for (int32_t i = 0; i < sets; i++)
         evidence[i] =
-            evidence_of_set(&frame, size, members + (ptrdiff_t)i * size, along);
+            evidence_of_set(frame, size, members + (ptrdiff_t)i * size, along);
     return 0;
 }

@@ -9,6 +9,7 @@
 #ifndef EVIDENCE_H
 #define EVIDENCE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* A frame with more is refused. */
@@ -54,6 +55,19 @@ typedef struct {
     double area;          /* of the frame, square pixels */
 } evidence_peaks_t;
 
+/* What the evidence takes from the peaks of one frame at one scale, whichever
+ * of them are taken for markers: computed once.  The caller gives room for
+ * evidence_frame_size() bytes, aligned as a double is; the constants must live
+ * as long. */
+typedef struct evidence_frame evidence_frame_t;
+
+size_t evidence_frame_size(void);
+
+/* Returns 0, or -1 if there are too many peaks. */
+int32_t evidence_prepare(evidence_frame_t *frame,
+                         const evidence_constants_t *constants,
+                         const evidence_peaks_t *peaks);
+
 /* The evidence of given sets in all but their places.
  *
  * members: sets x size indices of peaks, those of a set all different.
@@ -61,10 +75,9 @@ typedef struct {
  * evidence: receives one value a set: log density of the strengths, sum of the
  * members' likeness, each over the mean of the clutter in this frame, log
  * likelihood ratio of their colours, and minus the log density of as many peaks
- * of clutter, in square pixels to the power of size. Returns 0, or -1 if there
- * are too many peaks. */
-int32_t evidence_of_sets(const evidence_constants_t *constants,
-                         const evidence_peaks_t *peaks, int32_t sets,
+ * of clutter, in square pixels to the power of size. Returns 0, or -1 if a
+ * set has more members than the frame has peaks. */
+int32_t evidence_of_sets(const evidence_frame_t *frame, int32_t sets,
                          int32_t size, const int32_t *members,
                          const double *along, double *evidence);
 

@@ -10,7 +10,7 @@
 #define MOST_MARKERS (EVIDENCE_MAX_PEAKS + 1)
 
 typedef struct {
-    frame_t frame;
+    const evidence_frame_t *frame;
     const guided_dock_t *dock;
     double variance; /* of the places of peaks */
     double *whiten;  /* room for the matrix of that name, see weigh_all() */
@@ -41,7 +41,7 @@ static double covariance_of(const guess_t *guess, int32_t row, int32_t column)
 static double square_of(const guess_t *guess, int32_t marker, int32_t index)
 {
     const guided_dock_t *dock = guess->dock;
-    const peak_t *peak = &guess->frame.peaks[index];
+    const peak_t *peak = &guess->frame->peaks[index];
     const double xx = covariance_of(guess, 2 * marker, 2 * marker);
     const double xy = covariance_of(guess, 2 * marker, 2 * marker + 1);
     const double yy = covariance_of(guess, 2 * marker + 1, 2 * marker + 1);
@@ -75,7 +75,7 @@ static void find_options(guess_t *guess, int32_t options)
 {
     const guided_dock_t *dock = guess->dock;
     memset(guess->counts, 0, sizeof guess->counts);
-    for (int32_t i = 0; i < guess->frame.count; i++) {
+    for (int32_t i = 0; i < guess->frame->count; i++) {
         double squares[MOST_MARKERS];
         int32_t nearest = 0;
         for (int32_t m = 0; m < dock->markers; m++) {
@@ -130,7 +130,7 @@ static double whitened(const guess_t *guess, const set_t *set, double *errors)
     const int32_t n = 2 * set->size;
     double square_sum = 0;
     for (int32_t i = 0; i < set->size; i++) {
-        const peak_t *peak = &guess->frame.peaks[set->members[i]];
+        const peak_t *peak = &guess->frame->peaks[set->members[i]];
         const double *place = guess->dock->places + 2 * set->markers[i];
         errors[2 * i] = peak->x - place[0];
         errors[2 * i + 1] = peak->y - place[1];
@@ -190,7 +190,7 @@ static void choose(const guess_t *guess, set_t *set)
             continue;
         tried.evidence =
             most - 0.5 * whitened(guess, &tried, errors) +
-            evidence_of_set(&guess->frame, set->size, tried.members, along);
+            evidence_of_set(guess->frame, set->size, tried.members, along);
         if (tried.evidence > set->evidence)
             *set = tried;
     } while (turn(guess, set, which));
@@ -265,19 +265,19 @@ static set_t likeliest(const guess_t *guess)
     return best;
 }
 
-int32_t guided_guess(const evidence_constants_t *constants,
-                     const guided_dock_t *dock, const evidence_peaks_t *peaks,
+int32_t guided_guess(const guided_dock_t *dock, const evidence_frame_t *frame,
                      double sigma_px, int32_t options, double *room,
                      int32_t *members, double *evidence)
 {
-    guess_t guess = {
-        .dock = dock, .variance = square(sigma_px), .whiten = room};
+    guess_t guess = {.frame = frame,
+                     .dock = dock,
+                     .variance = square(sigma_px),
+                     .whiten = room};
     *evidence = -INFINITY;
-    if (peaks->count > EVIDENCE_MAX_PEAKS || options > GUIDED_MOST_OPTIONS)
+    if (options > GUIDED_MOST_OPTIONS)
         return -1;
-    if (peaks->count < dock->markers - 1)
+    if (frame->count < dock->markers - 1)
         return 0;
-    evidence_prepare(&guess.frame, constants, peaks);
     find_options(&guess, options);
     const set_t best = likeliest(&guess);
     for (int32_t m = 0; m < dock->markers; m++)

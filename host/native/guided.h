@@ -41,13 +41,12 @@ enum { GUIDED_MOST_OPTIONS = 8 };
 
 /* Find the likeliest set of peaks.
  *
- * peaks: at places in pixels, each known to sigma_px in x as in y.
+ * frame: of peaks at places in pixels, each known to sigma_px in x as in y.
  * options: the nearest so many are tried for each marker, GUIDED_MOST_OPTIONS
  * at most. room: for 4 n^2 numbers. members: receives n indices of peaks, -1
  * for a hidden marker. evidence: receives that of the set, and -infinity if
- * there is none. Returns 0, or -1 if there are too many peaks. */
-int32_t guided_guess(const evidence_constants_t *constants,
-                     const guided_dock_t *dock, const evidence_peaks_t *peaks,
+ * there is none. Returns 0, or -1 if there are too many options. */
+int32_t guided_guess(const guided_dock_t *dock, const evidence_frame_t *frame,
                      double sigma_px, int32_t options, double *room,
                      int32_t *members, double *evidence);
 

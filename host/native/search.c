@@ -11,9 +11,9 @@ static void keep(search_t *search, double place)
     int32_t markers = search->dock->markers, set[SEARCH_MAX_PROMISING];
     size_t size = (size_t)markers * sizeof *set;
     for (int32_t k = 0; k < markers; k++)
-        set[k] = search->promising[search->set[k]];
-    double looks =
-        evidence_of_set(&search->frame, markers, set, search->dock->along);
+        set[k] = search->bounds->promising[search->set[k]];
+    double looks = evidence_of_set(search->bounds->frame, markers, set,
+                                   search->dock->along);
     double evidence = place + looks;
     if (evidence < search->least)
         return;
@@ -101,7 +101,7 @@ WIDE_VECTORS static int32_t list_expected(const search_t *search,
 {
     const expected_t w = *expected;
     const double gate = search->dock->gate;
-    const int32_t all = search->count;
+    const int32_t all = search->bounds->count;
     int64_t within[SEARCH_MAX_PROMISING];
     for (int32_t i = 0; i < all; i++)
         within[i] =
@@ -161,17 +161,18 @@ WIDE_VECTORS static void views_from(const search_t *search, int32_t from,
                                     const search_window_t *window,
                                     views_t *views)
 {
-    const int32_t all = search->count;
+    const int32_t all = search->bounds->count;
     const double slack = search->dock->slack;
     const double shortest = square(larger(window->shortest - slack, 0));
     const double longest = square(window->longest + slack);
-    const double from_x = search->place_x[from], from_y = search->place_y[from];
+    const double from_x = search->bounds->place_x[from],
+                 from_y = search->bounds->place_y[from];
     const double right = window->x, down = window->y, slope = window->slope;
     double squares[SEARCH_MAX_PROMISING];
     int64_t held[SEARCH_MAX_PROMISING];
     for (int32_t i = 0; i < all; i++) {
-        const double x = search->place_x[i] - from_x;
-        const double y = search->place_y[i] - from_y;
+        const double x = search->bounds->place_x[i] - from_x;
+        const double y = search->bounds->place_y[i] - from_y;
         const double along = x * right + y * down;
         const double across = y * right - x * down;
         squares[i] = x * x + y * y;
@@ -182,8 +183,8 @@ WIDE_VECTORS static void views_from(const search_t *search, int32_t from,
     /* Without a branch, for nobody could foretell it. */
     for (int32_t i = 0; i < all; i++) {
         views->peak[count] = i;
-        views->x[count] = search->place_x[i] - from_x;
-        views->y[count] = search->place_y[i] - from_y;
+        views->x[count] = search->bounds->place_x[i] - from_x;
+        views->y[count] = search->bounds->place_y[i] - from_y;
         views->square[count] = squares[i];
         count += (int32_t)held[i];
     }
@@ -206,11 +207,11 @@ static void see_from(search_t *search, base_t *base)
     double along = base->x * window->x + base->y * window->y;
     double across = base->y * window->x - base->x * window->y;
     double right = base->x / base->square, down = base->y / base->square;
-    double from_x = search->place_x[search->set[0]];
-    double from_y = search->place_y[search->set[0]];
-    for (int32_t i = 0; i < search->count; i++) {
-        double x = search->place_x[i] - from_x;
-        double y = search->place_y[i] - from_y;
+    double from_x = search->bounds->place_x[search->set[0]];
+    double from_y = search->bounds->place_y[search->set[0]];
+    for (int32_t i = 0; i < search->bounds->count; i++) {
+        double x = search->bounds->place_x[i] - from_x;
+        double y = search->bounds->place_y[i] - from_y;
         search->every_x[i] = x * right + y * down;
         search->every_y[i] = y * right - x * down;
     }
@@ -274,6 +275,7 @@ WIDE_VECTORS static void search_base(search_t *search, base_t *base,
     const double base_x = base->x / base->square;
     const double base_y = base->y / base->square;
     const int32_t count = sides->count;
+    const double *rarity = search->bounds->rarity;
     double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
     int64_t inside[SEARCH_MAX_PROMISING], any = 0;
     for (int32_t j = 0; j < count; j++) {
@@ -289,8 +291,13 @@ WIDE_VECTORS static void search_base(search_t *search, base_t *base,
      * place is as much denser than its b as the base squared is small. */
     base->place =
         -search->log_places - (search->dock->markers - 1) * log(base->square);
+    /* What the evidence may come to, but for the rarity of the third. */
+    const double most = base->place + search->dock->most_norm[base->span] +
+                        search->beside + rarity[search->set[0]] +
+                        rarity[base->q];
     for (int32_t j = 0; j < count; j++)
-        if (inside[j] && sides->peak[j] != base->q)
+        if (inside[j] && sides->peak[j] != base->q &&
+            most + rarity[sides->peak[j]] >= search->least)
             search_third(search, base, sides->peak[j], x[j], y[j]);
 }
 
@@ -314,26 +321,19 @@ static void search_from(search_t *search, int32_t p)
     }
 }
 
-int32_t search_find(const evidence_constants_t *constants,
-                    const search_dock_t *dock, const evidence_peaks_t *peaks,
-                    int32_t promising_count, const int32_t *promising,
+int32_t search_find(const search_dock_t *dock, const search_bounds_t *bounds,
                     double least, int32_t most_sets, int32_t most_weighed,
                     int32_t *members, double *evidence, double *looks,
                     int32_t *weighed)
 {
     search_t search;
     *weighed = 0;
-    if (peaks->count > EVIDENCE_MAX_PEAKS ||
-        promising_count > SEARCH_MAX_PROMISING)
-        return -1;
-    if (promising_count < dock->markers || most_sets < 1)
+    if (bounds->count < dock->markers)
         return 0;
-    evidence_prepare(&search.frame, constants, peaks);
+    search.bounds = bounds;
     search.dock = dock;
     search.least = least;
-    search.count = promising_count;
-    search.promising = promising;
-    search.log_places = log(peaks->area) + dock->log_spread;
+    search.log_places = log(bounds->frame->area) + dock->log_spread;
     search.weighed = 0;
     search.most_weighed = most_weighed;
     search.most_sets = most_sets;
@@ -341,12 +341,9 @@ int32_t search_find(const evidence_constants_t *constants,
     search.members = members;
     search.evidence = evidence;
     search.looks = looks;
-    bounds_prepare(&search);
-    for (int32_t i = 0; i < search.count; i++) {
-        search.place_x[i] = peak_at(&search, i)->x;
-        search.place_y[i] = peak_at(&search, i)->y;
-    }
-    for (int32_t p = 0; p < search.count; p++)
+    bounds_of_strengths(&search);
+    search.beside = bounds_beside(&search, 3);
+    for (int32_t p = 0; p < bounds->count; p++)
         search_from(&search, p);
     *weighed = search.weighed;
     return search.found;

@@ -51,32 +51,44 @@ typedef struct {
     double log_spread;          /* log of the base's range of log lengths, times
                                  * roll_rad sqrt(2 pi) */
     double gate; /* w squared is less than this for each marker of a dock */
-    const double *along;    /* n: places along the dock, -1..1 */
-    const double *edges;    /* spans - 1 lengths between them, pixels */
-    const double *log_norm; /* spans x facets: log of the facet's share in the
-                             * span, times the density of b at its peak */
-    const double *offset;   /* spans x facets x 2m: minus W times the mean */
-    const double *whiten;   /* spans x facets x 2m x 2m: W, lower triangular;
-                             * Re b_3, Im b_3, Re b_4, ... */
+    const double *along;     /* n: places along the dock, -1..1 */
+    const double *edges;     /* spans - 1 lengths between them, pixels */
+    const double *log_norm;  /* spans x facets: log of the facet's share in the
+                              * span, times the density of b at its peak */
+    const double *most_norm; /* spans: the largest of its facets' */
+    const double *offset;    /* spans x facets x 2m: minus W times the mean */
+    const double *whiten;    /* spans x facets x 2m x 2m: W, lower triangular;
+                              * Re b_3, Im b_3, Re b_4, ... */
     const search_box_t *thirds; /* spans: where b_3 passes some facet's gate */
 } search_dock_t;
 
+/* What a search takes from the peaks of one scale, whichever dock of so many
+ * markers is looked for: computed once.  The caller gives room for
+ * search_bounds_size() bytes, aligned as a double is; the frame must live as
+ * long. */
+typedef struct search_bounds search_bounds_t;
+
+size_t search_bounds_size(void);
+
+/* promising: promising_count (at most SEARCH_MAX_PROMISING) indices of peaks,
+ * ascending; markers are looked for among them, all peaks are clutter.
+ * Returns 0, or -1 if there are too many. */
+int32_t search_prepare(search_bounds_t *bounds, const evidence_frame_t *frame,
+                       int32_t markers, int32_t promising_count,
+                       const int32_t *promising);
+
 /* Find the sets of promising peaks with an evidence of least or more.
  *
- * promising: promising_count (at most SEARCH_MAX_PROMISING) indices of peaks,
- * ascending; markers are looked for among them, all peaks are clutter.
- * most_sets: the best so many are kept.
+ * bounds: prepared for as many markers as the dock has.
+ * most_sets: the best so many, 1 or more, are kept.
  * most_weighed: after weighing so many sets, complete or not, the search gives
  * up, which bounds its time; it begins with the strongest peaks.
  * members: receives most_sets x n indices of peaks, those of p, q, the third...
  * evidence, looks: receive most_sets values each, the best set first: all of
  * the evidence, and the part of it that evidence_of_sets gives.
  * weighed: receives how many sets were weighed.
- * Returns the number of sets found, which all differ; -1 if there are too many
- * peaks. */
-int32_t search_find(const evidence_constants_t *constants,
-                    const search_dock_t *dock, const evidence_peaks_t *peaks,
-                    int32_t promising_count, const int32_t *promising,
+ * Returns the number of sets found, which all differ. */
+int32_t search_find(const search_dock_t *dock, const search_bounds_t *bounds,
                     double least, int32_t most_sets, int32_t most_weighed,
                     int32_t *members, double *evidence, double *looks,
                     int32_t *weighed);

@@ -58,9 +58,10 @@ class RobustMethod:
         peaks = find_peaks(response)
         watch.lap("peaks")
         turn = upright(look.R_expected)
-        candidates = []
+        searched, candidates = {}, []
         if look.everywhere:
-            by_scale = (view.candidates(cell, found, turn) for cell, found in peaks.items())
+            searched = view.searched(peaks, turn)
+            by_scale = (view.candidates(cell, among) for cell, among in searched.items())
             candidates = sorted((c for found in by_scale for c in found), key=lambda c: -c.evidence)
         watch.lap("search")
         prior = view.prior(look.R_expected, look.R_covariance)
@@ -69,7 +70,7 @@ class RobustMethod:
         )
         best = measure.best(candidates)
         if best is None and look.incomplete:
-            best = measure.incomplete(peaks)
+            best = measure.incomplete(searched)
         if best is None:
             priors = tuple(prior.about(self._dock.centre) for prior in look.priors)
             best = measure.about(priors, peaks)

@@ -6,13 +6,10 @@
 #include "weighing.h"
 
 /* Peaks here are the promising ones, numbered from 0. */
-typedef struct {
-    frame_t frame;
-    const search_dock_t *dock;
-    double least;
-    double log_places; /* of the frame's places and of the base's turns */
-    int32_t count;
-    const int32_t *promising;
+struct search_bounds {
+    const evidence_frame_t *frame;
+    int32_t markers, count;
+    int32_t promising[SEARCH_MAX_PROMISING];
     double place_x[SEARCH_MAX_PROMISING], place_y[SEARCH_MAX_PROMISING];
     /* Bounds, whatever the other members of a set are: of a peak's rarity and
      * likeness; of the sum of so many peaks'; of the ratio that one peak's
@@ -20,13 +17,23 @@ typedef struct {
     double rarity[SEARCH_MAX_PROMISING], rarest[SEARCH_MAX_PROMISING + 1];
     double colour[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
     double nearest_colour[SEARCH_MAX_PROMISING];
-    /* Of the log ratio of a set's colours, if this peak has the dock's. */
-    double log_colours[SEARCH_MAX_PROMISING];
+    /* Of the log ratio of a set's colours, if this peak has the dock's, and if
+     * any has. */
+    double log_colours[SEARCH_MAX_PROMISING], most_log_colours;
+};
+
+typedef struct {
+    const search_bounds_t *bounds;
+    const search_dock_t *dock;
+    double least;
+    double log_places; /* of the frame's places and of the base's turns */
     /* Of the log density of the strengths of all markers. */
     double strengths;
     /* And of what all markers but the first k add to the log density of the
      * strengths. */
     double strengths_left[SEARCH_MAX_PROMISING + 1];
+    /* Of strengths and colours and of the rarity of all markers but three. */
+    double beside;
     /* The set: the peaks taken for p, q, ..., and their b. */
     int32_t set[SEARCH_MAX_PROMISING];
     double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
@@ -41,15 +48,19 @@ typedef struct {
 
 static inline const peak_t *peak_at(const search_t *search, int32_t i)
 {
-    return &search->frame.peaks[search->promising[i]];
+    const search_bounds_t *bounds = search->bounds;
+    return &bounds->frame->peaks[bounds->promising[i]];
 }
 
-/* Fills in the bounds of a search, which has its frame and its peaks. */
-void bounds_prepare(search_t *search);
+/* Fills in what a search bounds the strengths by, which has its dock. */
+void bounds_of_strengths(search_t *search);
 
 /* What bounds_looks() is at most, told by what is known of each of the first k
  * peaks alone. */
 double bounds_most_looks(const search_t *search, int32_t k);
+
+/* The same whichever the first k are, but for their rarity. */
+double bounds_beside(const search_t *search, int32_t k);
 
 /* What strengths, rarity and colours of a set may come to at most, whose first
  * k peaks are known: if the others are the rarest, and of the colour nearest

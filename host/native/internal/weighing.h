@@ -25,13 +25,13 @@ typedef struct {
     int32_t stronger; /* how many of those nearby are stronger */
 } peak_t;
 
-typedef struct {
+struct evidence_frame {
     const evidence_constants_t *constants;
     int32_t count;
     double area, near_square;
     double heights, ratios; /* sums of all */
     peak_t peaks[EVIDENCE_MAX_PEAKS];
-} frame_t;
+};
 
 static inline double square(double x)
 {
@@ -66,7 +66,7 @@ static inline double colour_ratio(double disturbed, double same, double clutter)
     return (1 - disturbed) * same / clutter + disturbed;
 }
 
-static inline bool are_near(const frame_t *frame, const peak_t *one,
+static inline bool are_near(const evidence_frame_t *frame, const peak_t *one,
                             const peak_t *other)
 {
     return square(one->x - other->x) + square(one->y - other->y) <
@@ -92,10 +92,6 @@ static inline void add_strength(strengths_t *sums, double value, double weight,
     sums->log_density += log_density;
 }
 
-/* What depends on the peaks of a frame alone. */
-void evidence_prepare(frame_t *frame, const evidence_constants_t *constants,
-                      const evidence_peaks_t *peaks);
-
 /* Log density of the log strengths of markers: the integral over the common
  * value, which is evenly spread, and the slope, which is normal, of the product
  * of normal densities about them. */
@@ -114,7 +110,7 @@ double evidence_log_alike(const evidence_constants_t *constants,
  * the local count, together with one more peak in as much area as holds one
  * stronger peak in all the frame: the mean of a gamma distribution after that
  * count.  What outshines all others is the rarer for it, to a limit. */
-double evidence_rarity(const frame_t *frame, const peak_t *peak,
+double evidence_rarity(const evidence_frame_t *frame, const peak_t *peak,
                        int32_t stronger, int32_t nearby, int32_t count,
                        double total, double strongest);
 
@@ -122,18 +118,18 @@ double evidence_rarity(const frame_t *frame, const peak_t *peak,
  * others nearby (Parzen, Ann. Math. Statist. 33 (1962) 1065), as of rocks or
  * of a wall; as far as there are few, about those everywhere; and where these
  * are few, what is supposed. */
-double evidence_clutter_colour(const frame_t *frame, const peak_t *peak,
-                               double everywhere, int32_t count, double nearby,
-                               int32_t around);
+double evidence_clutter_colour(const evidence_frame_t *frame,
+                               const peak_t *peak, double everywhere,
+                               int32_t count, double nearby, int32_t around);
 
 /* Log of the mean likelihood ratio of the clutter's looks, where `count` peaks'
  * add up to `ratios`.  Over clutter of all kinds that mean is 1; where the
  * frame's own looks like lamps, a lamp's looks say so much less. */
-double evidence_log_mean_ratio(const frame_t *frame, int32_t count,
+double evidence_log_mean_ratio(const evidence_frame_t *frame, int32_t count,
                                double ratios);
 
 /* The evidence of one set in all but its places: see evidence_of_sets(). */
-double evidence_of_set(const frame_t *frame, int32_t size,
+double evidence_of_set(const evidence_frame_t *frame, int32_t size,
                        const int32_t *members, const double *along);
 
 #endif

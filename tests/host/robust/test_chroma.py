@@ -7,7 +7,7 @@ import numpy as np
 from search_reference import log_alike, rarity
 
 from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.evidence import evidence_of_sets
+from chromadock.robust.weigh.evidence import PlacedPeaks, evidence_of_sets
 
 FOUR = np.array([[0, 1, 2, 3]])
 AREA = 1e4
@@ -28,7 +28,7 @@ def log_common(chroma: np.ndarray, sets: np.ndarray, z: np.ndarray, snr: np.ndar
         others = [i for i in range(count) if i not in members]
         rare = sum(rarity(z, peaks, AREA, m, others) for m in members)
         rest.append(log_alike(snr[members], along) + rare)
-    return evidence_of_sets(z, peaks, AREA, sets, along) - rest
+    return evidence_of_sets(PlacedPeaks(z, peaks, AREA), sets, along) - rest
 
 
 def evidence(chroma: np.ndarray, z: np.ndarray = APART, snr: float = 60.0) -> float:

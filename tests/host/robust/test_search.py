@@ -11,13 +11,14 @@ from search_reference import log_looks, sets_of
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.robust.find import search
-from chromadock.robust.find.search import Candidates, Search
+from chromadock.robust.find.search import Candidates, Search, SearchedPeaks
 from chromadock.robust.frame.peaks import MAX_PEAKS, MAX_PROMISING, MIN_SNR, Peaks
 from chromadock.robust.weigh import clutter
 from chromadock.robust.weigh.evidence import (
     SLOPE,
     SPREAD,
     STRONGEST,
+    PlacedPeaks,
     evidence_of_sets,
     placed_along,
 )
@@ -74,7 +75,7 @@ def peaks_of(xy: np.ndarray, snr: np.ndarray, chroma: np.ndarray, likeness: np.n
 
 
 def look(count: int, z: np.ndarray, peaks: Peaks, least: float) -> Candidates:
-    return Search(MODELS[count], SIGMA_PX, AREA).find(z, peaks, least)
+    return Search(MODELS[count], SIGMA_PX).find(SearchedPeaks(z, peaks, AREA), least)
 
 
 @pytest.mark.parametrize(
@@ -115,7 +116,8 @@ def test_the_evidence_of_given_sets_is_that_of_the_formulas(size: int) -> None:
         along = rng.uniform(-1, 1, size)
         sets = np.array([rng.permutation(specks)[:size] for _ in range(5)])
         expected = [log_looks(z, peaks, AREA, tuple(m), along) for m in sets.tolist()]
-        assert evidence_of_sets(z, peaks, AREA, sets, along) == pytest.approx(expected, abs=1e-5)
+        found = evidence_of_sets(PlacedPeaks(z, peaks, AREA), sets, along)
+        assert found == pytest.approx(expected, abs=1e-5)
 
 
 @pytest.mark.parametrize("count", [4, 5, 8])
@@ -157,9 +159,7 @@ def test_few_peaks_are_no_error(count: int) -> None:
 def test_too_many_peaks_are_an_error() -> None:
     z, peaks, _ = frame(None, 200, np.random.default_rng(0))
     with pytest.raises(ValueError, match="200 peaks"):
-        look(4, z, peaks, 0.0)
-    with pytest.raises(ValueError, match="200 peaks"):
-        evidence_of_sets(z, peaks, AREA, np.array([[0, 1, 2]]), np.zeros(3))
+        PlacedPeaks(z, peaks, AREA)
 
 
 def test_a_frame_full_of_rings_takes_bounded_time(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -179,6 +179,17 @@ def test_a_frame_full_of_rings_takes_bounded_time(monkeypatch: pytest.MonkeyPatc
     assert look(8, z, peaks, -1000.0).weighed == 100
 
 
+def test_searches_that_share_what_is_taken_from_the_peaks_find_what_each_finds_alone() -> None:
+    z, peaks, _ = frame(RECTANGLE, 20, np.random.default_rng(13))
+    shared = SearchedPeaks(z, peaks, AREA)
+    for count in (4, 3, 5, 4):
+        together = Search(MODELS[count], SIGMA_PX).find(shared, -30.0)
+        alone = look(count, z, peaks, -30.0)
+        assert len(alone.evidence) > 0
+        assert together.members.tolist() == alone.members.tolist()
+        assert together.evidence.tolist() == alone.evidence.tolist()
+
+
 def test_of_more_sets_than_are_kept_the_best_are(monkeypatch: pytest.MonkeyPatch) -> None:
     z, peaks, _ = frame(RECTANGLE, 20, np.random.default_rng(11))
     every = look(4, z, peaks, -30.0)
@@ -192,10 +203,10 @@ def test_of_more_sets_than_are_kept_the_best_are(monkeypatch: pytest.MonkeyPatch
 
 def test_a_dock_upside_down_is_none() -> None:
     tall = RECTANGLE + np.array([(0.2, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0)])  # no symmetry
-    one = Search(ShapeModel.learn(tall, CAMERA), SIGMA_PX, AREA)
+    one = Search(ShapeModel.learn(tall, CAMERA), SIGMA_PX)
     for points, least in ((tall, 1), (tall * (1, -1, 1), 0)):
         z, peaks, _ = frame(points, 10, np.random.default_rng(4), strength=20.0)
-        assert min(1, len(one.find(z, peaks, np.log(300)).evidence)) == least
+        assert min(1, len(one.find(SearchedPeaks(z, peaks, AREA), np.log(300)).evidence)) == least
 
 
 def alike(snr: np.ndarray, along: np.ndarray) -> float:
@@ -205,8 +216,9 @@ def alike(snr: np.ndarray, along: np.ndarray) -> float:
     flat = np.zeros((count, 2))
     peaks = peaks_of(flat, snr[order], flat, flat[:, 0])
     z, sets = flat[:, 0] + 0j, np.arange(count)[None]
-    looks = evidence_of_sets(z, peaks, AREA, sets, along[order])
-    return float(looks[0] - evidence_of_sets(z, peaks, AREA, sets, 0 * along)[0])
+    placed = PlacedPeaks(z, peaks, AREA)
+    looks = evidence_of_sets(placed, sets, along[order])
+    return float(looks[0] - evidence_of_sets(placed, sets, 0 * along)[0])
 
 
 def test_strengths_are_integrated_over_the_common_one_and_the_slope() -> None:
@@ -242,10 +254,9 @@ def rarity(xy: np.ndarray, snr: np.ndarray, member: int) -> float:
     """Of one peak: all but the density of its strength, which depends on nothing else."""
     flat = np.zeros((len(xy), 2))
     peaks = peaks_of(xy, snr, flat, flat[:, 0])
-    z, one, here = xy @ np.array([1, 1j]), np.array([[member]]), np.zeros(1)
-    return float(
-        evidence_of_sets(z, peaks, AREA, one, here)[0] + np.log(np.log(STRONGEST / MIN_SNR))
-    )
+    placed = PlacedPeaks(xy @ np.array([1, 1j]), peaks, AREA)
+    own = evidence_of_sets(placed, np.array([[member]]), np.zeros(1))[0]
+    return float(own + np.log(np.log(STRONGEST / MIN_SNR)))
 
 
 def test_rarity_is_one_over_the_density_of_clutter() -> None:

@@ -15,7 +15,7 @@ from chromadock._native import ffi, lib
 from chromadock.camera import CameraModel
 from chromadock.geometry.pose import MIN_MARKERS, Estimate, projected
 from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.evidence import CONSTANTS, NativePeaks, doubles
+from chromadock.robust.weigh.evidence import PlacedPeaks, doubles
 
 HIDDEN: float = lib.GUIDED_HIDDEN
 """How often a marker is out or behind something."""
@@ -97,20 +97,19 @@ class Expectation:
         if self._places is None:
             return None
         count = len(self._places)
-        native = NativePeaks(peaks.xy, peaks, self._area)
+        placed = PlacedPeaks(peaks.xy, peaks, self._area)
         members = np.empty(count, np.int32)
         evidence = ffi.new("double *")
         if lib.guided_guess(
-            CONSTANTS,
             self._dock,
-            native.pointer,
+            placed.native,
             sigma_px,
             max(1, int(_MAX_CHOICES ** (1 / count))),
             doubles(np.empty(4 * count**2)),
             ffi.from_buffer("int32_t[]", members),
             evidence,
         ):
-            raise ValueError(f"{len(peaks.snr)} peaks: too many")
+            raise ValueError(f"{count} markers: too many options")
         if evidence[0] == -math.inf:
             return None
         markers = np.flatnonzero(members >= 0)

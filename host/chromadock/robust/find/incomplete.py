@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from chromadock.camera import CameraModel
 from chromadock.geometry.pose import MIN_MARKERS
 from chromadock.robust.find.guided import HIDDEN, Guess
-from chromadock.robust.find.search import Search
+from chromadock.robust.find.search import Search, SearchedPeaks
 from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.shape import ShapeModel, focal_px, ideal
+from chromadock.robust.weigh.shape import ShapeModel, focal_px
 
 AMBIGUOUS = float(np.log(2))
 """A name for the places must be so much likelier than any other: three markers with the fourth
@@ -38,10 +38,9 @@ class _Part:
 
 
 class Incomplete:
-    """Searches for (n, 3) markers but one; ``area`` of the frame in square ideal pixels."""
+    """Searches for (n, 3) markers but one."""
 
-    def __init__(self, points: NDArray[np.float64], camera: CameraModel, area: float) -> None:
-        self._camera, self._area = camera, area
+    def __init__(self, points: NDArray[np.float64], camera: CameraModel) -> None:
         self._points, self._focal_px = points - points.mean(axis=0), focal_px(camera)
         count = len(points)
         self._parts: list[_Part] = []
@@ -51,22 +50,17 @@ class Incomplete:
                 self._parts.append(_Part(markers, ShapeModel.learn(points[markers], camera)))
         self._searches: dict[int, list[Search]] = {}
 
-    def find(
-        self, cell: int, peaks: Peaks, sigma_px: float, least: float, upright: complex
-    ) -> Guess | None:
-        """The best set at one scale, if its evidence is ``least`` or more and not AMBIGUOUS.
-
-        ``upright``: see ``view.View.candidates``.
-        """
-        if not self._parts or len(peaks.snr) < len(self._parts) - 1:
+    def find(self, cell: int, among: SearchedPeaks, sigma_px: float, least: float) -> Guess | None:
+        """The best set at one scale, if its evidence is ``least`` or more and not AMBIGUOUS."""
+        peaks = among.peaks
+        if not self._parts or len(peaks.promising) < len(self._parts) - 1:
             return None
         if cell not in self._searches:
-            self._searches[cell] = [Search(p.model, sigma_px, self._area) for p in self._parts]
+            self._searches[cell] = [Search(p.model, sigma_px) for p in self._parts]
         rarely = float(np.log(HIDDEN / len(self._parts)))
-        places = ideal(peaks.xy, self._camera) * upright
         guesses: list[Guess] = []
         for part, search in zip(self._parts, self._searches[cell], strict=True):
-            found = search.find(places, peaks, least - rarely - AMBIGUOUS)
+            found = search.find(among, least - rarely - AMBIGUOUS)
             each = zip(found.members, found.evidence.tolist(), found.looks.tolist(), strict=True)
             for members, evidence, looks in each:
                 guesses.append(Guess(part.markers, members, evidence + rarely, looks + rarely))

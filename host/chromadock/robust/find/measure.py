@@ -14,6 +14,7 @@ from chromadock.geometry.pose import refined as refined_pose
 from chromadock.geometry.profile import widened
 from chromadock.results.detection import Misfit
 from chromadock.robust.find.guided import HIDDEN, Expectation, Guess
+from chromadock.robust.find.search import SearchedPeaks
 from chromadock.robust.find.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
 from chromadock.robust.frame.peaks import Peaks
 from chromadock.robust.frame.plateau import on_one_thing
@@ -115,14 +116,12 @@ class Measure:
         measured = (self._partly(*guess, priors) for guess in guesses)
         return next(filter(None, measured), None)
 
-    def incomplete(self, peaks: dict[int, Peaks]) -> Constellation | None:
+    def incomplete(self, searched: dict[int, SearchedPeaks]) -> Constellation | None:
         """The dock with a marker out, if that explains the frame well enough."""
         measured: list[Constellation] = []
-        for cell, found in peaks.items():
-            guess = self.view.incomplete.find(
-                cell, found, PEAK_ERROR * cell, LEAST_FOR_A_TRACK, self.upright
-            )
-            seen = None if guess is None else self._partly(guess, cell, found)
+        for cell, among in searched.items():
+            guess = self.view.incomplete.find(cell, among, PEAK_ERROR * cell, LEAST_FOR_A_TRACK)
+            seen = None if guess is None else self._partly(guess, cell, among.peaks)
             if seen is not None:
                 measured.append(seen)
         return max(measured, key=lambda seen: seen.evidence, default=None)

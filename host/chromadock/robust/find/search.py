@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
 from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.evidence import CONSTANTS, NativePeaks, doubles
+from chromadock.robust.weigh.evidence import PlacedPeaks, doubles, room
 from chromadock.robust.weigh.shape import FACETS, Complex, Real, ShapeModel, Window
 
 MAX_SETS = 64
@@ -40,15 +40,46 @@ class Candidates:
     weighed: int
 
 
-class Search:
-    """Finds one dock in peaks located to ``sigma_px``, in a frame of so many square pixels,
-    whose closest markers are ``apart_px`` or more from each other.
+class SearchedPeaks(PlacedPeaks):
+    """What every search among the peaks of one scale takes from them, computed once.
+
+    See ``PlacedPeaks``; markers are looked for among the ``promising``, all peaks are clutter.
     """
 
-    def __init__(
-        self, model: ShapeModel, sigma_px: float, frame_area: float, apart_px: float = 0.0
-    ) -> None:
-        self._area = frame_area
+    def __init__(self, z: Complex | Real, peaks: Peaks, area: float) -> None:
+        super().__init__(z, peaks, area)
+        self._bounds: dict[int, Any] = {}
+
+    def bounds(self, markers: int) -> Any:
+        """What a search for a dock of so many markers is bounded by, as C has it.
+
+        Raises
+        ------
+        ValueError
+            More promising peaks than C has room for.
+        """
+        if markers not in self._bounds:
+            self._bounds[markers] = room(lib.search_bounds_size())
+            promising = np.ascontiguousarray(self.peaks.promising, np.int32)
+            if lib.search_prepare(
+                self._pointer(markers),
+                self.native,
+                markers,
+                len(promising),
+                ffi.from_buffer("int32_t[]", promising),
+            ):
+                raise ValueError(f"{len(promising)} promising peaks: too many")
+        return self._pointer(markers)
+
+    def _pointer(self, markers: int) -> Any:
+        return ffi.cast("search_bounds_t *", self._bounds[markers])
+
+
+class Search:
+    """Finds one dock in peaks located to ``sigma_px``, whose closest markers are ``apart_px`` or
+    more from each other."""
+
+    def __init__(self, model: ShapeModel, sigma_px: float, apart_px: float = 0.0) -> None:
         self._by_marker = np.argsort(model.order)
         bounds = np.concatenate([[model.base.shortest], model.edges, [model.base.longest]])
         spans, size = len(bounds) - 1, model.mean.shape[1]
@@ -57,6 +88,7 @@ class Search:
         covariance = model.covariance + noise[:, None, None] * np.eye(size)
         whiten = np.tril(np.linalg.inv(np.linalg.cholesky(covariance)))
         peak = np.log(np.diagonal(whiten, axis1=1, axis2=2) / np.sqrt(2 * np.pi)).sum(axis=1)
+        norm = model.log_share + peak
         reach = np.sqrt(_NEAR * np.diagonal(covariance, axis1=1, axis2=2)[:, :2])
         low = (model.mean[:, :2] - reach).reshape(spans, FACETS, 2).min(axis=1)
         high = (model.mean[:, :2] + reach).reshape(spans, FACETS, 2).max(axis=1)
@@ -65,7 +97,8 @@ class Search:
         self._kept = [
             doubles(model.along),
             doubles(model.edges),
-            doubles(model.log_share + peak),
+            doubles(norm),
+            doubles(norm.reshape(spans, FACETS).max(axis=1)),
             doubles(-(whiten @ model.mean[..., None])),
             doubles(whiten),
             ffi.from_buffer("search_box_t[]", np.stack([low, high], axis=2)),
@@ -87,30 +120,21 @@ class Search:
             ),
         )
 
-    def find(self, z: Complex, peaks: Peaks, least: float) -> Candidates:
-        """Sets of peaks with an evidence of ``least`` or more.
-
-        Parameters
-        ----------
-        z : (N,) ideal pixels of the peaks.
-        peaks : of which the markers are looked for among the ``promising``; all are clutter.
+    def find(self, peaks: SearchedPeaks, least: float) -> Candidates:
+        """Sets of peaks at ideal pixels with an evidence of ``least`` or more.
 
         Raises
         ------
         ValueError
-            More peaks than C has room for.
+            More promising peaks than C has room for.
         """
-        members = np.empty((MAX_SETS, len(self._by_marker)), np.int32)
+        markers = len(self._by_marker)
+        members = np.empty((MAX_SETS, markers), np.int32)
         evidence, looks = np.empty((2, MAX_SETS))
         weighed = ffi.new("int32_t *")
-        native = NativePeaks(z, peaks, self._area)
-        promising = np.ascontiguousarray(peaks.promising, np.int32)
         count = lib.search_find(
-            CONSTANTS,
             self._dock,
-            native.pointer,
-            len(promising),
-            ffi.from_buffer("int32_t[]", promising),
+            peaks.bounds(markers),
             least,
             MAX_SETS,
             MAX_WEIGHED,
@@ -119,8 +143,6 @@ class Search:
             doubles(looks),
             weighed,
         )
-        if count < 0:
-            raise ValueError(f"{len(peaks.snr)} peaks, {len(promising)} promising: too many")
         ordered = members[:count, self._by_marker].astype(np.intp)
         return Candidates(ordered, evidence[:count], looks[:count], weighed[0])
 

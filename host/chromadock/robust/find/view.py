@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
+from chromadock.geometry.pose import MIN_MARKERS
 from chromadock.robust.find.incomplete import Incomplete
-from chromadock.robust.find.search import Search
+from chromadock.robust.find.search import Search, SearchedPeaks
 from chromadock.robust.frame.layout import finest_cell
 from chromadock.robust.frame.peaks import Peaks
 from chromadock.robust.weigh.acceptance import HOPEFUL
@@ -21,7 +22,6 @@ from chromadock.robust.weigh.shape import (
     ATTITUDE_RAD,
     FINEST_SPACING_CELLS,
     MIN_SPACING_CELLS,
-    Complex,
     ShapeModel,
     focal_px,
     ideal,
@@ -41,17 +41,19 @@ LOG_RANGES = float(np.log(20.0))
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Candidate:
-    """``members`` (n,) of the ``peaks`` at one scale, one for each marker; ``looks`` and
-    ``evidence``: see ``search.Candidates``; ``z`` (N,): ideal pixels of all peaks, ``area``: of
-    the frame in square ones."""
+    """``members`` (n,) of the peaks at one scale that were searched, one for each marker; ``looks``
+    and ``evidence``: see ``search.Candidates``."""
 
     cell: int
-    peaks: Peaks
+    among: SearchedPeaks
     members: NDArray[np.intp]
     looks: float
     evidence: float
-    z: Complex
-    area: float
+
+    @property
+    def peaks(self) -> Peaks:
+        """All peaks of the scale."""
+        return self.among.peaks
 
     @property
     def xy(self) -> NDArray[np.float64]:
@@ -62,7 +64,7 @@ class Candidate:
         """``looks`` of the others than one marker, which are (n,) ``along`` the dock."""
         others = np.delete(np.arange(len(along)), marker)
         sets = self.members[None, others]
-        return float(evidence_of_sets(self.z, self.peaks, self.area, sets, along[others])[0])
+        return float(evidence_of_sets(self.among, sets, along[others])[0])
 
 
 class View:
@@ -83,7 +85,7 @@ class View:
     @cached_property
     def incomplete(self) -> Incomplete:
         """The search for all markers but one: learnt when it is first needed."""
-        return Incomplete(self.points, self.camera, self.area)
+        return Incomplete(self.points, self.camera)
 
     def is_of(self, camera: CameraModel) -> bool:
         """Whether this camera's geometry is the same."""
@@ -100,22 +102,29 @@ class View:
             return self._usual_prior
         return PosePrior(self.focal_px, self.area, LOG_RANGES, R_expected, R_covariance)
 
-    def candidates(self, cell: int, peaks: Peaks, upright: complex) -> list[Candidate]:
-        """What may be the dock among the peaks of one scale, the best first.
+    def searched(self, peaks: dict[int, Peaks], upright: complex) -> dict[int, SearchedPeaks]:
+        """The peaks of a frame at ideal places, by cell; of scales with enough for a dock.
 
         ``upright``: a unit complex number that turns the picture to where the dock stands upright.
         """
-        if len(peaks.promising) < len(self.points):
+        return {
+            cell: SearchedPeaks(ideal(found.xy, self.camera) * upright, found, self.area)
+            for cell, found in peaks.items()
+            if len(found.promising) >= MIN_MARKERS
+        }
+
+    def candidates(self, cell: int, among: SearchedPeaks) -> list[Candidate]:
+        """What may be the dock among the peaks of one scale, the best first."""
+        if len(among.peaks.promising) < len(self.points):
             return []
         if cell not in self._searches:
             finest = cell == finest_cell(self.camera.width, self.camera.height)
             apart_px = cell * (FINEST_SPACING_CELLS if finest else MIN_SPACING_CELLS)
-            self._searches[cell] = Search(self.model, PEAK_ERROR * cell, self.area, apart_px)
-        z = ideal(peaks.xy, self.camera) * upright
-        found = self._searches[cell].find(z, peaks, HOPEFUL)
+            self._searches[cell] = Search(self.model, PEAK_ERROR * cell, apart_px)
+        found = self._searches[cell].find(among, HOPEFUL)
         best = zip(found.members, found.looks.tolist(), found.evidence.tolist(), strict=True)
         return [
-            Candidate(cell, peaks, members, looks, evidence, z, self.area)
+            Candidate(cell, among, members, looks, evidence)
             for members, looks, evidence in islice(best, MAX_TRIALS)
         ]
 

@@ -52,17 +52,34 @@ CONSTANTS = ffi.new(
 )
 
 
-class NativePeaks:
-    """Peaks at ``z`` (N,) x + iy or (N, 2), in a frame of so many square pixels, as C has them."""
+class PlacedPeaks:
+    """``peaks`` of one scale at ``z`` (N,) x + iy or (N, 2), in a frame of so many square pixels;
+    ``native``: what the evidence takes from them, as C has it.
+
+    Raises
+    ------
+    ValueError
+        More peaks than C has room for.
+    """
 
     def __init__(self, z: Complex | Real, peaks: Peaks, area: float) -> None:
+        self.peaks = peaks
         count = len(peaks.snr)
         # Where there were more peaks than are kept, those from the weakest one on are known.
         least = float(peaks.snr[-1]) if count == MAX_PEAKS else MIN_SNR
         # C's pointers keep nothing alive.
         arrays = (z, peaks.snr, peaks.chroma, peaks.likeness, peaks.inside)
-        self._kept = [doubles(array) for array in arrays]
-        self.pointer: Any = ffi.new("evidence_peaks_t *", (count, *self._kept, least, area))
+        kept = [doubles(array) for array in arrays]
+        given = ffi.new("evidence_peaks_t *", (count, *kept, least, area))
+        self._room = room(lib.evidence_frame_size())
+        self.native: Any = ffi.cast("evidence_frame_t *", self._room)
+        if lib.evidence_prepare(self.native, CONSTANTS, given):
+            raise ValueError(f"{count} peaks: too many")
+
+
+def room(size: int) -> Any:
+    """Memory for so many bytes, aligned as numbers are; it lives as long as what is returned."""
+    return doubles(np.empty(-(-size // ffi.sizeof("double"))))
 
 
 def doubles(values: Complex | Real) -> Any:
@@ -70,32 +87,28 @@ def doubles(values: Complex | Real) -> Any:
     return ffi.from_buffer("double[]", np.ascontiguousarray(values).view(np.float64))
 
 
-def evidence_of_sets(
-    z: Complex, peaks: Peaks, area: float, members: NDArray[np.intp], along: Real
-) -> Real:
+def evidence_of_sets(placed: PlacedPeaks, members: NDArray[np.intp], along: Real) -> Real:
     """(M,) natural log of the likelihood ratio of (M, k) sets in all but their places.
 
     Parameters
     ----------
-    z : (N,) places of the peaks, in a frame of ``area`` square pixels.
     along : (k,) where the markers at the members are along the dock, -1..1.
 
     Raises
     ------
     ValueError
-        More peaks than C has room for, or than the frame has.
+        Larger sets than the frame has peaks.
     """
-    native, evidence = NativePeaks(z, peaks, area), np.empty(len(members))
+    evidence = np.empty(len(members))
     sets = np.ascontiguousarray(members, np.int32)
     if lib.evidence_of_sets(
-        CONSTANTS,
-        native.pointer,
+        placed.native,
         *sets.shape,
         ffi.from_buffer("int32_t[]", sets),
         doubles(along),
         doubles(evidence),
     ):
-        raise ValueError(f"sets of {sets.shape[1]} of {len(peaks.snr)} peaks")
+        raise ValueError(f"sets of {sets.shape[1]} of {len(placed.peaks.snr)} peaks")
     return evidence
 
 

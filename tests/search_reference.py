@@ -15,7 +15,7 @@ from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, NEIGHBOURHOOD, Pea
 from chromadock.robust.weigh import chroma, clutter, evidence
 from chromadock.robust.weigh.shape import FACETS, ShapeModel, Window
 
-GATE = 18.0
+GATE_OF_FEW, GATE_OF_MANY, FEW = 40.0, 18.0, 5
 VAST = 1e7
 """Variance of a common strength of which next to nothing is known."""
 
@@ -65,11 +65,11 @@ def log_places(model: ShapeModel, sigma_px: float, z: np.ndarray) -> float | Non
 
 
 def passes(off: np.ndarray, covariance: np.ndarray) -> bool:
-    """Whether each marker adds less than GATE to chi-square, given those before it."""
-    before = 0.0
+    """Whether each marker adds less than the gate to chi-square, given those before it."""
+    before, gate = 0.0, GATE_OF_FEW if len(off) // 2 + 2 <= FEW else GATE_OF_MANY
     for m in range(2, len(off) + 1, 2):
         square = float(off[:m] @ np.linalg.solve(covariance[:m, :m], off[:m]))
-        if square - before >= GATE:
+        if square - before >= gate:
             return False
         before = square
     return True

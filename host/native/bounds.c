@@ -5,9 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* More than what rounding does to a sum of logarithms. */
-#define ROUNDING 1e-6
-
 /* Rarity of a peak at most, with any others in a set of so many. */
 static double most_rarity(const evidence_frame_t *frame, int32_t index,
                           int32_t size)
@@ -26,58 +23,96 @@ static double most_rarity(const evidence_frame_t *frame, int32_t index,
                         strongest));
 }
 
-/* Density of clutter's chroma at a peak at least: if all others in a set of so
- * many are of its very colour and as well known as the strongest peak's. */
-static double least_clutter_colour(const evidence_frame_t *frame,
-                                   const peak_t *peak, int32_t size)
-{
-    double itself = same_colour(peak, peak);
-    double others =
-        (size - 1) * student(0, peak->variance + frame->peaks[0].variance);
-    return evidence_clutter_colour(
-        frame, peak, peak->everywhere - itself - others, frame->count - size,
-        peak->nearby - itself - others, peak->around - 1);
-}
-
 static int descending(const void *a, const void *b)
 {
     double one = *(const double *)a, other = *(const double *)b;
     return (one < other) - (one > other);
 }
 
-/* What the colour of each peak is worth if it is that of each other. */
+/* Keep the largest values of each column, in falling order: there is room for
+ * so many rows, and a row of values is one more. */
+static inline void keep_largest(double largest[][SEARCH_MAX_PROMISING],
+                                int32_t room, const double *values,
+                                int32_t count)
+{
+    double rest[SEARCH_MAX_PROMISING];
+    for (int32_t i = 0; i < count; i++)
+        rest[i] = values[i];
+    for (int32_t k = 0; k < room; k++) {
+        double *restrict kept = largest[k];
+        for (int32_t i = 0; i < count; i++) {
+            const double more = larger(kept[i], rest[i]);
+            rest[i] = smaller(kept[i], rest[i]);
+            kept[i] = more;
+        }
+    }
+}
+
+/* How like the colours of any two peaks are, and of each peak the sum over the
+ * likest, which are as many as markers: itself mostly one of them. */
+WIDE_VECTORS static void compare_colours(search_bounds_t *bounds,
+                                         double together[SEARCH_MAX_PROMISING])
+{
+    const int32_t count = bounds->count, markers = bounds->markers;
+    double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
+    double variance[SEARCH_MAX_PROMISING];
+    double likest[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
+    for (int32_t i = 0; i < count; i++) {
+        const peak_t *peak = bounds_peak(bounds, i);
+        x[i] = peak->chroma_x;
+        y[i] = peak->chroma_y;
+        variance[i] = peak->variance;
+        together[i] = 0;
+    }
+    for (int32_t k = 0; k < markers; k++)
+        for (int32_t i = 0; i < count; i++)
+            likest[k][i] = 0;
+    for (int32_t j = 0; j < count; j++) {
+        double *restrict same = bounds->colour[j];
+        for (int32_t i = 0; i < count; i++) {
+            const double apart = square(x[i] - x[j]) + square(y[i] - y[j]);
+            same[i] = student(apart, variance[i] + variance[j]);
+        }
+        keep_largest(likest, markers, same, count);
+    }
+    for (int32_t k = 0; k < markers; k++)
+        for (int32_t i = 0; i < count; i++)
+            together[i] += likest[k][i];
+}
+
+/* What the colour of each peak is worth if it is that of each other, and if it
+ * is that of so many others.  The density of clutter's chroma at a peak is
+ * least if the others of its set are those that are likest to its colour. */
 WIDE_VECTORS static void prepare_colours(search_bounds_t *bounds)
 {
     const evidence_frame_t *frame = bounds->frame;
     const int32_t count = bounds->count, markers = bounds->markers;
     const double disturbed = frame->constants->colour_disturbed;
-    double x[SEARCH_MAX_PROMISING], y[SEARCH_MAX_PROMISING];
-    double variance[SEARCH_MAX_PROMISING];
-    for (int32_t i = 0; i < count; i++) {
-        const peak_t *peak = &frame->peaks[bounds->promising[i]];
-        x[i] = peak->chroma_x;
-        y[i] = peak->chroma_y;
-        variance[i] = peak->variance;
-        bounds->nearest_colour[i] = 1;
-    }
+    double together[SEARCH_MAX_PROMISING];
+    compare_colours(bounds, together);
+    for (int32_t k = 0; k < markers; k++)
+        for (int32_t i = 0; i < count; i++)
+            bounds->nearest_colours[k][i] = k == 0 ? 1 : 0;
     for (int32_t j = 0; j < count; j++) {
-        const double clutter = least_clutter_colour(
-            frame, &frame->peaks[bounds->promising[j]], markers);
+        const peak_t *peak = bounds_peak(bounds, j);
+        const double clutter = evidence_clutter_colour(
+            frame, peak, peak->everywhere - together[j], frame->count - markers,
+            peak->nearby - together[j], peak->around - 1);
         double *restrict ratios = bounds->colour[j];
-        double *restrict nearest = bounds->nearest_colour;
-        for (int32_t i = 0; i < count; i++) {
-            const double apart = square(x[i] - x[j]) + square(y[i] - y[j]);
-            const double same = student(apart, variance[i] + variance[j]);
-            const double ratio = colour_ratio(disturbed, same, clutter);
-            ratios[i] = i == j ? 1 : ratio;
-            nearest[i] = larger(nearest[i], ratios[i]);
-        }
+        for (int32_t i = 0; i < count; i++)
+            ratios[i] = colour_ratio(disturbed, ratios[i], clutter);
+        ratios[j] = 0;
+        keep_largest(bounds->nearest_colours + 1, markers - 1, ratios, count);
+        ratios[j] = 1;
     }
-    bounds->most_log_colours = 0;
+    for (int32_t k = 1; k < markers; k++)
+        for (int32_t i = 0; i < count; i++)
+            bounds->nearest_colours[k][i] *= bounds->nearest_colours[k - 1][i];
     for (int32_t i = 0; i < count; i++) {
-        bounds->log_colours[i] = (markers - 1) * log(bounds->nearest_colour[i]);
+        const double most = log(bounds->nearest_colours[markers - 1][i]);
+        bounds->log_colours[i] = most;
         bounds->most_log_colours =
-            larger(bounds->most_log_colours, bounds->log_colours[i]);
+            i == 0 ? most : larger(bounds->most_log_colours, most);
     }
 }
 
@@ -169,11 +204,9 @@ double bounds_looks(const search_t *search, int32_t k,
     int32_t others = bounds->markers - k;
     double rarity = bounds->rarest[others], colour = DBL_MIN;
     for (int32_t i = 0; i < k; i++) {
-        double common = 1;
+        double common = bounds->nearest_colours[others][search->set[i]];
         for (int32_t j = 0; j < k; j++)
             common *= bounds->colour[search->set[j]][search->set[i]];
-        for (int32_t j = 0; j < others; j++)
-            common *= bounds->nearest_colour[search->set[i]];
         colour = larger(colour, common);
         rarity += bounds->rarity[search->set[i]];
     }

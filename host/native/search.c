@@ -85,7 +85,7 @@ static double off_square(const expected_t *w, double x, double y)
 static void take(search_t *search, int32_t k, int32_t i, double x, double y,
                  strengths_t *strengths)
 {
-    const peak_t *peak = peak_at(search, i);
+    const peak_t *peak = bounds_peak(search->bounds, i);
     add_strength(strengths, peak->log_snr, peak->weight, peak->log_density,
                  search->dock->along[k]);
     search->set[k] = i;
@@ -117,9 +117,9 @@ WIDE_VECTORS static int32_t list_expected(const search_t *search,
 /* Add all markers from the k-th on to a set, in a class of views.
  *
  * place: log density of the places if these markers are right where they are
- * expected; strengths: of the set. */
+ * expected; looks: what all else may come to; strengths: of the set. */
 static void extend(search_t *search, int32_t k, int32_t class, double place,
-                   const strengths_t *strengths)
+                   double looks, const strengths_t *strengths)
 {
     if (k == search->dock->markers) {
         keep(search, place);
@@ -134,16 +134,18 @@ static void extend(search_t *search, int32_t k, int32_t class, double place,
         int32_t i = peaks[j];
         double x = search->every_x[i], y = search->every_y[i];
         double off = off_square(&expected, x, y);
-        if (is_in_set(search, k, i))
+        double there = place - 0.5 * off;
+        if (is_in_set(search, k, i) ||
+            there + bounds_looks_with(search, looks, k, i) < search->least)
             continue;
         if (search->weighed >= search->most_weighed)
             return;
-        double there = place - 0.5 * off;
+        search->weighed++;
         strengths_t sums = *strengths;
         take(search, k, i, x, y, &sums);
-        search->weighed++;
-        if (there + bounds_looks(search, k + 1, &sums) >= search->least)
-            extend(search, k + 1, class, there, &sums);
+        double most = bounds_looks(search, k + 1, &sums);
+        if (there + most >= search->least)
+            extend(search, k + 1, class, there, most, &sums);
     }
 }
 
@@ -224,9 +226,12 @@ static void search_third(search_t *search, base_t *base, int32_t third,
                          double x, double y)
 {
     const search_dock_t *dock = search->dock;
-    double looks = 0, most = 0;
-    bool counted = false, known = false;
+    double looks = 0;
+    bool known = false;
     strengths_t strengths = {0};
+    search->set[1] = base->q;
+    search->set[2] = third;
+    const double most = bounds_most_looks(search, 3);
     const int32_t first = base->span * dock->facets;
     const int32_t wide = 2 * (dock->markers - 2);
     const double *offset = dock->offset + first * wide;
@@ -235,23 +240,15 @@ static void search_third(search_t *search, base_t *base, int32_t third,
          facet++, offset += wide, whiten += wide * wide) {
         expected_t expected = expect(search, 2, offset, whiten);
         double off = off_square(&expected, x, y);
-        if (off >= dock->gate)
-            continue;
-        if (search->weighed >= search->most_weighed)
-            return;
-        if (!counted) {
-            counted = true;
-            search->weighed++;
-            search->set[1] = base->q;
-            search->set[2] = third;
-            most = bounds_most_looks(search, 3);
-        }
         double there = base->place + dock->log_norm[first + facet] - 0.5 * off;
         /* Few have to be looked at closely. */
-        if (there + most < search->least)
+        if (off >= dock->gate || there + most < search->least)
             continue;
         if (!known) {
+            if (search->weighed >= search->most_weighed)
+                return;
             known = true;
+            search->weighed++;
             take(search, 0, search->set[0], 0, 0, &strengths);
             take(search, 1, base->q, 1, 0, &strengths);
             take(search, 2, third, x, y, &strengths);
@@ -263,7 +260,7 @@ static void search_third(search_t *search, base_t *base, int32_t third,
             see_from(search, base);
         there += base->turn;
         if (there + looks >= search->least)
-            extend(search, 3, first + facet, there, &strengths);
+            extend(search, 3, first + facet, there, looks, &strengths);
     }
 }
 

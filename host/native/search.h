@@ -86,7 +86,7 @@ int32_t search_prepare(search_bounds_t *bounds, const evidence_frame_t *frame,
  * members: receives most_sets x n indices of peaks, those of p, q, the third...
  * evidence, looks: receive most_sets values each, the best set first: all of
  * the evidence, and the part of it that evidence_of_sets gives.
- * weighed: receives how many sets were weighed.
+ * weighed: receives how many sets of three markers or more were weighed.
  * Returns the number of sets found, which all differ. */
 int32_t search_find(const search_dock_t *dock, const search_bounds_t *bounds,
                     double least, int32_t most_sets, int32_t most_weighed,

@@ -5,6 +5,9 @@
 #include "../search.h"
 #include "weighing.h"
 
+/* More than what rounding does to a sum of logarithms. */
+#define ROUNDING 1e-6
+
 /* Peaks here are the promising ones, numbered from 0. */
 struct search_bounds {
     const evidence_frame_t *frame;
@@ -13,10 +16,11 @@ struct search_bounds {
     double place_x[SEARCH_MAX_PROMISING], place_y[SEARCH_MAX_PROMISING];
     /* Bounds, whatever the other members of a set are: of a peak's rarity and
      * likeness; of the sum of so many peaks'; of the ratio that one peak's
-     * (first's) colour is the other's; and of that with any other. */
+     * (first's) colour is the other's; and of the product of that (second's)
+     * with so many (first) others. */
     double rarity[SEARCH_MAX_PROMISING], rarest[SEARCH_MAX_PROMISING + 1];
     double colour[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
-    double nearest_colour[SEARCH_MAX_PROMISING];
+    double nearest_colours[SEARCH_MAX_PROMISING][SEARCH_MAX_PROMISING];
     /* Of the log ratio of a set's colours, if this peak has the dock's, and if
      * any has. */
     double log_colours[SEARCH_MAX_PROMISING], most_log_colours;
@@ -46,9 +50,9 @@ typedef struct {
     double *evidence, *looks;
 } search_t;
 
-static inline const peak_t *peak_at(const search_t *search, int32_t i)
+static inline const peak_t *bounds_peak(const search_bounds_t *bounds,
+                                        int32_t i)
 {
-    const search_bounds_t *bounds = search->bounds;
     return &bounds->frame->peaks[bounds->promising[i]];
 }
 
@@ -67,5 +71,17 @@ double bounds_beside(const search_t *search, int32_t k);
  * to that of the one that has the dock's. */
 double bounds_looks(const search_t *search, int32_t k,
                     const strengths_t *strengths);
+
+/* The same for a set whose next marker, after the first k, is peak i, told
+ * without looking at that peak's colour and strength: looks is what
+ * bounds_looks() says of the set without it. */
+static inline double bounds_looks_with(const search_t *search, double looks,
+                                       int32_t k, int32_t i)
+{
+    const search_bounds_t *bounds = search->bounds;
+    const int32_t others = bounds->markers - k;
+    return looks + bounds->rarity[i] + bounds->rarest[others - 1] -
+           bounds->rarest[others] + ROUNDING;
+}
 
 #endif

@@ -43,6 +43,11 @@ static inline double larger(double a, double b)
     return a > b ? a : b;
 }
 
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
 /* Density of Student's distribution in the plane with two degrees of freedom,
  * at a squared distance: noise's middle and glints' tails. */
 static inline double student(double distance_square, double variance)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from chromadock.robust.find.measure import Measure
+from chromadock.robust.find.search import SearchedPeaks
 from chromadock.robust.find.view import Candidate
 from chromadock.robust.frame.peaks import Peaks
 from chromadock.robust.weigh.acceptance import Constellation
@@ -39,7 +40,8 @@ def candidate(members: np.ndarray, decades: float, cell: int = 4) -> Candidate:
     flat, count = np.zeros((len(PLACES), 2)), len(PLACES)
     rest = (np.ones(count), np.ones(count), flat, np.ones(count), np.zeros(count, np.uint8))
     peaks = Peaks(PLACES, *rest, np.arange(count), np.ones(count))
-    return Candidate(cell, peaks, members, 0.0, decades * DECADE, NOTHING, 1.0)
+    among = SearchedPeaks(PLACES, peaks, 640 * 480)
+    return Candidate(cell, among, members, 0.0, decades * DECADE)
 
 
 @pytest.mark.parametrize("order", [1, -1])

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from search_reference import log_looks, sets_of
+from track_truth import rotation
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.robust.find import search
@@ -118,6 +119,20 @@ def test_the_evidence_of_given_sets_is_that_of_the_formulas(size: int) -> None:
         expected = [log_looks(z, peaks, AREA, tuple(m), along) for m in sets.tolist()]
         found = evidence_of_sets(PlacedPeaks(z, peaks, AREA), sets, along)
         assert found == pytest.approx(expected, abs=1e-5)
+
+
+@pytest.mark.parametrize("yaw_deg", [38, 40])
+def test_a_dock_that_is_near_and_turned_far_is_found(yaw_deg: float) -> None:
+    """One side of it is much nearer than the other, and so larger: few of the views that shapes
+    are learnt from show as much."""
+    R = rotation(-11, yaw_deg, 12)
+    markers = CAMERA.project(RECTANGLE @ R.T + (-0.24, -0.16, 0.7))
+    rng = np.random.default_rng(5)
+    xy = np.concatenate([markers, rng.uniform((0, 0), (640, 480), (10, 2))])
+    snr = np.concatenate([np.full(4, 100.0), MIN_SNR * rng.random(10) ** -0.5])
+    chroma = np.concatenate([np.zeros((4, 2)), rng.normal(0, 0.6, (10, 2))])
+    found = look(4, xy @ np.array([1, 1j]), peaks_of(xy, snr, chroma, np.zeros(14)), np.log(300))
+    assert [0, 1, 2, 3] in found.members.tolist()
 
 
 @pytest.mark.parametrize("count", [4, 5, 8])

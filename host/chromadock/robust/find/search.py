@@ -22,8 +22,16 @@ MAX_SETS = 64
 MAX_WEIGHED = 4000
 """Sets, complete or not, that are weighed: bounds the time.  Few frames have half as many."""
 
-# Chi-square with two degrees of freedom that one true marker in 8000 exceeds.
-_NEAR = 18.0
+# Chi-square with two degrees of freedom, which a marker stays below.  One true marker in 8000 would
+# exceed 18 if shapes were normal, but those of a dock near by and turned far have a longer tail.
+# Of many markers so many sets pass the wider gate that the search gives up before it is through.
+_NEAR_OF_FEW, _NEAR_OF_MANY = 40.0, 18.0
+_FEW = 5
+
+
+def gate(markers: int) -> float:
+    """The chi-square that each of a dock's markers is below."""
+    return _NEAR_OF_FEW if markers <= _FEW else _NEAR_OF_MANY
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +97,8 @@ class Search:
         whiten = np.tril(np.linalg.inv(np.linalg.cholesky(covariance)))
         peak = np.log(np.diagonal(whiten, axis1=1, axis2=2) / np.sqrt(2 * np.pi)).sum(axis=1)
         norm = model.log_share + peak
-        reach = np.sqrt(_NEAR * np.diagonal(covariance, axis1=1, axis2=2)[:, :2])
+        near = gate(len(model.order))
+        reach = np.sqrt(near * np.diagonal(covariance, axis1=1, axis2=2)[:, :2])
         low = (model.mean[:, :2] - reach).reshape(spans, FACETS, 2).min(axis=1)
         high = (model.mean[:, :2] + reach).reshape(spans, FACETS, 2).max(axis=1)
         turns = model.roll_rad * np.sqrt(2 * np.pi)
@@ -115,7 +124,7 @@ class Search:
                 2 * sigma_px,
                 model.roll_rad,
                 np.log(np.log(model.base.longest / model.base.shortest) * turns),
-                _NEAR,
+                near,
                 *self._kept,
             ),
         )

@@ -182,7 +182,8 @@ static void transmit(size_t capacity)
     MUST(of_messages == n);
     if (capacity > 3000) /* room for all but images */
         MUST(dock.link.acks.count == 0 && dock.link.texts.count == 0 &&
-             dock.link.parameters.due == 0 &&
+             dock.link.parameters.turns[VALUE_FLOAT].due == 0 &&
+             dock.link.parameters.turns[VALUE_WHOLE].due == 0 &&
              dock.link.reports[REPORT_STATUS].state != REPORT_DUE);
     free(bytes);
 }

@@ -62,6 +62,7 @@ size_t link_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
     sender_t sender = {bytes, 0, capacity, &dock->link.sequence,
                        dock->link.system};
     link_expire_snapshot(&dock->link, now_ms);
+    link_expire_injection(&dock->link, now_ms);
     for (size_t i = 0; i < COUNT(senders); i++)
         if (!senders[i](dock, &sender, now_ms))
             break;

@@ -73,7 +73,8 @@ link_sender_t link_send_snapshot;
 
 /* link_injection.c */
 link_handler_t link_on_handshake, link_on_packet;
-bool link_injection_lasts(link_t *link, uint32_t now_ms); /* or ends it */
+void link_expire_injection(link_t *link, uint32_t now_ms); /* of a silent host
+                                                            */
 link_sender_t link_send_echo;
 
 /* link_reports.c */

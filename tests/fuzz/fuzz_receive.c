@@ -143,10 +143,10 @@ static void must_be_sound(void)
         MUST(duty[i] <= LED_FULL);
     MUST(link->receiver.length <= RECEIVER_CAPACITY);
     MUST(link->texts.count <= LINK_TEXTS && link->acks.count <= LINK_ACKS);
-    MUST((link->parameters.due | link->typed.values.due |
-          link->typed.answers.due | link->typed.refused) >>
-             PARAMETER_COUNT ==
-         0);
+    uint32_t bits = link->parameters.refused | link->parameters.floats;
+    for (int form = 0; form < VALUE_FORMS; form++)
+        bits |= link->parameters.turns[form].due;
+    MUST(bits >> PARAMETER_COUNT == 0);
     MUST(dock.requests.save <= SAVE_WRITING);
     const link_injection_t *injection = &link->injection;
     MUST(injection->image.size <= BUFFER_BYTES);

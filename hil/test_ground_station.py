@@ -32,10 +32,21 @@ def value_of(rig: Rig, name: str) -> float:
     [dialect.MAV_PARAM_TYPE_UINT8, dialect.MAV_PARAM_TYPE_INT16, dialect.MAV_PARAM_TYPE_INT32],
 )
 def test_an_integer_is_set_by_its_bytes_and_by_a_float(rig: Rig, kind: int) -> None:
+    """Each is answered in its own way."""
     rig.send(as_bytes("LED_LIMIT", 100, kind))
-    assert value_of(rig, "LED_LIMIT") == 100
+    answer = rig.wait("PARAM_VALUE", lambda m: m.param_id == "LED_LIMIT")
+    assert answer.param_type == dialect.MAV_PARAM_TYPE_INT32
+    assert struct.pack("<f", answer.param_value) == struct.pack("<i", 100)
     rig.send(dialect.MAVLink_param_set_message(50, 1, b"LED_LIMIT", 90.0, kind))
     assert value_of(rig, "LED_LIMIT") == 90
+
+
+def test_mavsdk_reads_integers_and_others_floats(rig: Rig) -> None:
+    request = dialect.MAVLink_param_request_read_message(50, 1, b"WINDOW_MS", -1)
+    for system, kind in ((245, dialect.MAV_PARAM_TYPE_INT32), (255, dialect.MAV_PARAM_TYPE_REAL32)):
+        rig.wire.write(rig.pack(request, system, 190))
+        answer = rig.wait("PARAM_VALUE", lambda m: m.param_id == "WINDOW_MS")
+        assert answer.param_type == kind
 
 
 def test_parameters_with_types_of_their_own_are_listed_and_set(rig: Rig) -> None:

@@ -16,6 +16,7 @@ C_TYPES = {
     "GAMMA": "uint16_t",
     "MARKER_HUE": "uint16_t",
     "ARCTANGENT": "uint8_t",
+    "MEAN_RED_OR_BLUE": "uint8_t",
 }
 
 

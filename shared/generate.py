@@ -77,7 +77,7 @@ def outputs() -> dict[str, bytes]:
         "host/chromadock/parameter_table.py": emit_parameters.python(settings_banner, settings),
         "docs/parameters.md": emit_parameters.page(settings_banner, settings),
         "firmware/lib/dockcore/src/method.h": emit.c_header(
-            banner, method, digest(method), in_c := lookup | tables.core_tables()
+            banner, method, digest(method), in_c := tables.core_tables(method)
         ),
         "firmware/lib/dockcore/src/method.c": emit.c_tables(banner, method, in_c),
         "host/chromadock/method.py": emit.python(banner, method, digest(method)),

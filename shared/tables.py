@@ -83,9 +83,17 @@ def all_tables(m: Method) -> dict[str, list[int]]:
     }
 
 
-def core_tables() -> dict[str, list[int]]:
-    """Of the C alone: means of 2 x 2 RGB565 pixels, green where ``pixel.h`` has it."""
-    return {
+def core_tables(m: Method) -> dict[str, list[int]]:
+    """Every table of the C code.
+
+    It has no gamma table for the first exponent, 1: that light is 257 times the code value.  And
+    it has the means of 2 x 2 RGB565 pixels, green where ``pixel.h`` has it.
+    """
+    shared = all_tables(m)
+    if shared["GAMMA"][:256] != [257 * code for code in range(256)]:
+        raise ValueError("method.toml: the first of led.gammas has to be 1.0")
+    return shared | {
+        "GAMMA": shared["GAMMA"][256:],
         "MEAN_RED_OR_BLUE": mean_of_four(31, 0),
         "MEAN_GREEN": mean_of_four(63, 10),
     }

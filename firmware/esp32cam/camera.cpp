@@ -127,7 +127,7 @@ void Camera::apply(const camera_order_t &order)
     adopt(order);
     if (state == RUNNING && settings.lock != 0 &&
         sensor_values_are_given(settings)) {
-        lock();
+        run();
         return;
     }
     locked = false;
@@ -147,6 +147,8 @@ void Camera::settle(bool only_first_frames)
     skip = 0;
 }
 
+/* Locks where that is wanted, and checks a lock that was not proven yet by its
+ * picture, before frames go to the dock. */
 void Camera::run()
 {
     if (settings.lock != 0) {
@@ -219,7 +221,7 @@ void Camera::look_after_sensor()
     if ((!locked && proof != LOCK_REFUTED) ||
         values.exposure != lock_at.exposure || values.gain != lock_at.gain ||
         sensor->status.aec != 0 || sensor->status.agc != 0)
-        lock();
+        run();
 }
 
 /* With every buffer in hand the driver has nothing to fill: it stops after the

@@ -279,7 +279,8 @@ void assert_text(uint8_t severity, const char *expected)
     TEST_ASSERT_EQUAL_UINT8(severity, text.severity);
 }
 
-void assert_value(const char *name, float value)
+/* The one answer about a parameter that was heard, which is of this type. */
+static mavlink_param_value_t value_heard(const char *name, uint8_t type)
 {
     mavlink_param_value_t answer;
     char words[sizeof answer.param_id + 1] = {0};
@@ -290,8 +291,24 @@ void assert_value(const char *name, float value)
                                    &answer);
     memcpy(words, answer.param_id, sizeof answer.param_id);
     TEST_ASSERT_EQUAL_STRING(name, words);
+    TEST_ASSERT_EQUAL_UINT8_MESSAGE(type, answer.param_type, name);
+    return answer;
+}
+
+void assert_value(const char *name, float value)
+{
+    const mavlink_param_value_t answer =
+        value_heard(name, MAV_PARAM_TYPE_REAL32);
     TEST_ASSERT_TRUE_MESSAGE(answer.param_value == value, name);
-    TEST_ASSERT_EQUAL_UINT8(MAV_PARAM_TYPE_REAL32, answer.param_type);
+}
+
+void assert_whole(const char *name, int32_t value)
+{
+    const mavlink_param_value_t answer =
+        value_heard(name, MAV_PARAM_TYPE_INT32);
+    int32_t told;
+    memcpy(&told, &answer.param_value, sizeof told);
+    TEST_ASSERT_EQUAL_INT32_MESSAGE(value, told, name);
 }
 
 mavlink_dock_status_t status_now(void)

@@ -72,7 +72,8 @@ const mavlink_message_t *heard_at(size_t n);
 void assert_silent(void); /* but for what the clock sends */
 void assert_ack(uint16_t command, uint8_t result);
 void assert_text(uint8_t severity, const char *text);
-void assert_value(const char *name, float value);
-mavlink_dock_status_t status_now(void); /* asks for it */
+void assert_value(const char *name, float value);   /* as a float */
+void assert_whole(const char *name, int32_t value); /* by its own bytes */
+mavlink_dock_status_t status_now(void);             /* asks for it */
 
 #endif

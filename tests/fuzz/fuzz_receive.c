@@ -87,10 +87,10 @@ static void must_be_sound(void)
         MUST(duty[i] <= LED_FULL);
     MUST(link->receiver.length <= RECEIVER_CAPACITY);
     MUST(link->texts.count <= LINK_TEXTS && link->acks.count <= LINK_ACKS);
-    MUST((link->parameters.due | link->typed.values.due |
-          link->typed.answers.due | link->typed.refused) >>
-             PARAMETER_COUNT ==
-         0);
+    uint32_t bits = link->parameters.refused | link->parameters.floats;
+    for (int form = 0; form < VALUE_FORMS; form++)
+        bits |= link->parameters.turns[form].due;
+    MUST(bits >> PARAMETER_COUNT == 0);
     MUST(dock.requests.save <= SAVE_WRITING);
     const link_injection_t *injection = &link->injection;
     MUST(injection->image.size <= BUFFER_BYTES);
@@ -126,7 +126,8 @@ static void transmit(size_t capacity)
     MUST(of_messages == n);
     if (capacity > 3000) /* room for all but images */
         MUST(dock.link.acks.count == 0 && dock.link.texts.count == 0 &&
-             dock.link.parameters.due == 0 &&
+             dock.link.parameters.turns[VALUE_FLOAT].due == 0 &&
+             dock.link.parameters.turns[VALUE_WHOLE].due == 0 &&
              dock.link.reports[REPORT_STATUS].state != REPORT_DUE);
     free(bytes);
 }

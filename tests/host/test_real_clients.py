@@ -22,6 +22,7 @@ from chromadock.parameter_table import PARAMETERS
 
 ROOT = Path(__file__).resolve().parents[2]
 MAVSDK = ROOT / "build" / "mavsdk"
+CLIENT = ROOT / "tests" / "mavsdk_parameters.py"
 TIMEOUT_S = 20.0
 WHOLE = [p.name for p in PARAMETERS if step(p) == 1.0]
 """Parameters whose every value is a whole number."""
@@ -52,14 +53,19 @@ def ground_station(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPat
     link.close()
 
 
-def value_of(link, name: str) -> float:
+def answer_about(link, name: str):
     """The next answer about one parameter."""
     end = time.monotonic() + TIMEOUT_S
     while time.monotonic() < end:
         answer = link.recv_match(type="PARAM_VALUE", blocking=True, timeout=1)
         if answer is not None and answer.param_id == name:
-            return float(answer.param_value)
+            return answer
     raise AssertionError(f"no answer about {name}")
+
+
+def value_of(link, name: str) -> float:
+    """The next answer about one parameter, as mavutil shows every one: a float."""
+    return float(answer_about(link, name).param_value)
 
 
 def test_mavutil_fetches_and_sets_every_parameter(ground_station) -> None:
@@ -97,6 +103,7 @@ def test_mavutil_is_told_the_range_of_a_value_refused(ground_station) -> None:
 
 @pytest.mark.parametrize("kind", [mavutil.mavlink.MAV_PARAM_TYPE_INT32])
 def test_mavutil_sets_whole_numbers_by_their_bytes(ground_station, kind: int) -> None:
+    """The answer to such a set is such bytes; what is read afterwards is a float."""
     link = ground_station
     for p in PARAMETERS:
         for value in (p.minimum, p.maximum):
@@ -104,17 +111,23 @@ def test_mavutil_sets_whole_numbers_by_their_bytes(ground_station, kind: int) ->
                 continue
             (number,) = struct.unpack("<f", struct.pack("<i", int(value)))
             link.param_set_send(p.name, number, kind)
+            answer = answer_about(link, p.name)
+            assert answer.param_type == kind
+            assert struct.unpack("<i", struct.pack("<f", answer.param_value)) == (value,)
+            link.param_fetch_one(p.name)
             assert value_of(link, p.name) == value
 
 
-@pytest.mark.parametrize("protocol", ["v1", "ext"])
-def test_mavsdk_sets_and_reads_every_parameter(tcp_dock: str, protocol: str) -> None:
-    """Integers by the protocol that has them; by the other one all are floats."""
+@pytest.mark.parametrize(
+    ("protocol", "calls"), [("default", "typed"), ("default", "floats"), ("ext", "typed")]
+)
+def test_mavsdk_sets_and_reads_every_parameter(tcp_dock: str, protocol: str, calls: str) -> None:
+    """Whole numbers by its calls for integers and the rest by those for floats, or all by these."""
     if not MAVSDK.is_dir():
         pytest.skip("mavsdk: not in build/mavsdk: run make setup")
     wanted = [[p.name, p.minimum, p.maximum, p.name in WHOLE] for p in PARAMETERS]
     done = subprocess.run(
-        [sys.executable, ROOT / "tests" / "mavsdk_parameters.py", tcp_dock.split(":")[2], protocol],
+        [sys.executable, CLIENT, tcp_dock.split(":")[2], protocol, calls],
         env={**os.environ, "PYTHONPATH": str(MAVSDK)},
         input=json.dumps(wanted) + "\n",
         capture_output=True,
@@ -123,13 +136,16 @@ def test_mavsdk_sets_and_reads_every_parameter(tcp_dock: str, protocol: str) -> 
     )
     assert done.returncode == 0, done.stderr
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("[{")]
-    read, (integers, floats) = json.loads(line)
+    first, read, last = json.loads(line)
+    if calls == "typed":  # before it set anything
+        assert first == {p.name: pytest.approx(p.default, abs=1e-4) for p in PARAMETERS}
     assert read == {
         p.name: [pytest.approx(p.minimum, abs=1e-4), pytest.approx(p.maximum, abs=1e-4)]
         for p in PARAMETERS
     }
+    integers, floats = last
     assert sorted(integers + floats) == sorted(p.name for p in PARAMETERS)
-    assert sorted(integers) == (sorted(WHOLE) if protocol == "ext" else [])
+    assert sorted(integers) == (sorted(WHOLE) if calls == "typed" else [])
 
 
 @pytest.fixture

@@ -204,6 +204,22 @@ static void test_handshakes_that_contradict_themselves_are_refused(void)
     }
 }
 
+/* With its camera broken a dock is given no frame that could tell the time. */
+static void test_a_silent_host_s_injection_ends_without_another_frame(void)
+{
+    const frame_t frame = frame_of(&golden_frames[0]);
+    link_start();
+    tell_frame(&frame);
+    clock_ms += 3000;
+    hear();
+    tell(wire_command(MAV_CMD_DOCK_SNAPSHOT, 0, 0, 0, 0));
+    assert_ack(MAV_CMD_DOCK_SNAPSHOT, MAV_RESULT_TEMPORARILY_REJECTED);
+    clock_ms += 1;
+    hear();
+    tell(wire_command(MAV_CMD_DOCK_SNAPSHOT, 0, 0, 0, 0));
+    assert_ack(MAV_CMD_DOCK_SNAPSHOT, MAV_RESULT_ACCEPTED);
+}
+
 static void run_tests(void)
 {
     RUN_TEST(test_injected_golden_frames_give_the_golden_colour);
@@ -215,6 +231,7 @@ static void run_tests(void)
     RUN_TEST(test_two_frames_are_never_mixed);
     RUN_TEST(test_announcements_of_a_wrong_size_are_refused_and_counted);
     RUN_TEST(test_handshakes_that_contradict_themselves_are_refused);
+    RUN_TEST(test_a_silent_host_s_injection_ends_without_another_frame);
 }
 
 SUITE(run_tests)

@@ -41,9 +41,8 @@ static void set_scene(const double light[3], double own)
 /* As a camera encodes light: the inverse of the lamps' decoding by 2.2. */
 static uint32_t code_of(double light)
 {
-    const uint16_t *decoded = METHOD_GAMMA + 2 * 256;
     uint32_t code = 0;
-    while (code < 255 && decoded[code] < 65535 * light)
+    while (code < 255 && led_light((uint8_t)code, 2) < 65535 * light)
         code++;
     return code;
 }

@@ -6,8 +6,7 @@
 #include "marker.h"
 
 #define DIM_HOLD_MS 30000
-#define DIM_WINDOW_MS 60000
-#define DIM_SAMPLE_MS (DIM_WINDOW_MS / METHOD_WINDOW_CAPACITY)
+#define DIM_SAMPLE_MS (DECISION_NIGHT_WINDOW_MS / METHOD_WINDOW_CAPACITY)
 /* What comes on slowly, as a lamp does too, is compared with what was then. */
 #define DIM_MARK_MS 10000
 /* How far a value may be from the one before, and a hue from the one shown. */
@@ -90,8 +89,9 @@ static void take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
 
 static void hold(decision_t *decision, uint32_t now_ms)
 {
-    decision->held = (decision_mark_t){decision->background.value,
-                                       decision->steady.shown, now_ms};
+    decision->held =
+        (decision_mark_t){decision->background.value, decision->steady.shown};
+    decision->held_ms = now_ms;
 }
 
 /* In dim water what is to be taken must have stayed the same while it waited:
@@ -101,8 +101,8 @@ static void wait_for_more(decision_t *decision, uint32_t now_ms)
     if (is_near(decision, &decision->other))
         return;
     steady_wait(&decision->steady, now_ms);
-    decision->other = (decision_mark_t){decision->background.value,
-                                        decision->decided_hue, now_ms};
+    decision->other =
+        (decision_mark_t){decision->background.value, decision->decided_hue};
 }
 
 static bool take_dim(decision_t *decision, uint32_t now_ms)
@@ -110,14 +110,15 @@ static bool take_dim(decision_t *decision, uint32_t now_ms)
     const bool like = is_like(decision);
     if (!like)
         wait_for_more(decision, now_ms);
-    if (!steady_takes(&decision->steady, like, DIM_HOLD_MS, now_ms))
+    if (!steady_takes(&decision->steady, like, DIM_HOLD_MS, HOLD_FRAMES,
+                      now_ms))
         return false;
     if (like && now_ms - decision->sampled_ms < DIM_SAMPLE_MS) {
         steady_wait(&decision->steady, now_ms);
         return true;
     }
-    take(decision, DIM_WINDOW_MS, now_ms);
-    if (!like || now_ms - decision->held.since_ms >= DIM_MARK_MS)
+    take(decision, DECISION_NIGHT_WINDOW_MS, now_ms);
+    if (!like || now_ms - decision->held_ms >= DIM_MARK_MS)
         hold(decision, now_ms);
     return true;
 }
@@ -127,7 +128,7 @@ bool decision_take(decision_t *decision, uint32_t window_ms, uint32_t now_ms)
     if (decision_is_dim(decision))
         return take_dim(decision, now_ms);
     if (!steady_takes(&decision->steady, is_like(decision), METHOD_HOLD_MS,
-                      now_ms))
+                      HOLD_FRAMES, now_ms))
         return false;
     take(decision, window_ms, now_ms);
     hold(decision, now_ms);
@@ -147,7 +148,7 @@ bool decision_frame(decision_t *decision, const frame_t *frame,
 {
     if (!decision_see(decision, frame, settings, now_ms))
         return false;
-    steady_takes(&decision->steady, is_like(decision), 0, now_ms);
+    steady_takes(&decision->steady, is_like(decision), 0, 1, now_ms);
     take(decision, settings->window_ms, now_ms);
     hold(decision, now_ms);
     steady_let_go(&decision->steady);

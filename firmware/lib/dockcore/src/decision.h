@@ -20,11 +20,14 @@
  * after which an old decision is none any more. */
 #define DECISION_WAIT_MS 15000
 
-/* Water to compare with: its value and its marker's hue, and since when. */
+/* At night, where the light changes slowly and frames that count may come every
+ * ten seconds, the marker's hue is the mean over a minute. */
+#define DECISION_NIGHT_WINDOW_MS 60000
+
+/* Water to compare with: its value and its marker's hue. */
 typedef struct {
     uint8_t value;
     uint16_t hue;
-    uint32_t since_ms;
 } decision_mark_t;
 
 typedef struct {
@@ -35,6 +38,7 @@ typedef struct {
     uint16_t water_hue;   /* of the last frame that was taken */
     uint8_t water_value;
     decision_mark_t held;   /* dim water: what decisions must be like */
+    uint32_t held_ms;       /* when that was seen */
     decision_mark_t other;  /* dim water unlike that, which waits to be taken */
     uint32_t sampled_ms;    /* dim water: when one last went into the mean */
     bool decided;           /* whether a frame was taken yet */
@@ -55,11 +59,12 @@ bool decision_see(decision_t *decision, const frame_t *frame,
                   const dock_settings_t *settings, uint32_t now_ms);
 
 /* Takes what decision_see saw into what is shown, averaged over window_ms.
- * Returns false where it waits: decisions of another kind for METHOD_HOLD_MS.
+ * Returns false where it waits: decisions of another kind for METHOD_HOLD_MS,
+ * and for the third one in a row.
  *
  * Dusk and dawn are slow, and a vehicle's lamps pass: in dim water all that is
  * unlike what was ten seconds before waits, for half a minute in which it must
- * not change; and the mean is that of a minute. */
+ * not change; and the mean is that of DECISION_NIGHT_WINDOW_MS. */
 bool decision_take(decision_t *decision, uint32_t window_ms, uint32_t now_ms);
 
 /* Takes that nothing could be seen: water without a hue. */

@@ -72,7 +72,7 @@ static void camera_fault(dock_t *dock)
 
 void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms)
 {
-    const bool injecting = link_injection_lasts(&dock->link, now_ms);
+    link_expire_injection(&dock->link, now_ms);
     lamps_turn(&dock->lamps, now_ms);
     if (frame == NULL || frame->bytes == NULL) {
         camera_fault(dock);
@@ -81,7 +81,7 @@ void dock_frame(dock_t *dock, const frame_t *frame, uint32_t now_ms)
     if (dock->camera_lost)
         link_say_words(&dock->link, MAV_SEVERITY_NOTICE, "camera is back");
     dock->camera_lost = false;
-    if (injecting)
+    if (link_is_injecting(&dock->link))
         return;
     if (!decision_see(&dock->decision, frame, &dock->settings, now_ms))
         return;

@@ -41,7 +41,7 @@ typedef struct {
 } dock_camera_t;
 
 typedef struct {
-    dock_settings_t settings; /* changed by link_parameters.c alone */
+    dock_settings_t settings; /* changed by link_settings.c alone */
     dock_board_t board;       /* dock.c, but for what the buffer holds */
     dock_camera_t camera;     /* dock.c */
     uint32_t camera_faults;   /* dock.c: times that the camera gave no frame */

@@ -7,6 +7,13 @@ static int64_t clamp(int64_t value, int64_t least, int64_t most)
     return value < least ? least : value > most ? most : value;
 }
 
+uint16_t led_light(uint8_t code, uint8_t gamma)
+{
+    if (gamma == 0)
+        return (uint16_t)(UINT16_MAX / 255 * code);
+    return METHOD_GAMMA[256 * (gamma - 1) + code];
+}
+
 /* Light 0..65535 after the matrix row. */
 static uint32_t mix(const int16_t row[3], const uint16_t light[3])
 {
@@ -39,10 +46,11 @@ void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings)
 {
     const rgb_t pure = rgb_from_hsv(hue, 255, 255);
     const uint8_t code[3] = {pure.red, pure.green, pure.blue};
-    const uint16_t *decode = METHOD_GAMMA + 256 * settings->gamma;
     uint16_t light[3];
-    for (int i = 0; i < 3; i++)
-        light[i] = decode[clamp(code[i] + settings->offset[i], 0, 255)];
+    for (int i = 0; i < 3; i++) {
+        const int64_t shifted = clamp(code[i] + settings->offset[i], 0, 255);
+        light[i] = led_light((uint8_t)shifted, settings->gamma);
+    }
     for (int i = 0; i < 3; i++)
         duty[i] = duty_of(mix(settings->matrix + 3 * i, light), settings);
 }

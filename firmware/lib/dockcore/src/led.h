@@ -26,6 +26,10 @@ typedef struct {
  * LEDs are dimmed later than the water is. */
 led_settings_t led_dimmed(const led_settings_t *settings, uint8_t value);
 
+/* Linear light 0..65535 of a gamma-coded value; gamma as in the settings, of
+ * which 0 is the exponent 1: light in proportion to the value. */
+uint16_t led_light(uint8_t code, uint8_t gamma);
+
 /* Duties 0..LED_FULL of a pure colour: offset, gamma decoding, 3 x 3 matrix,
  * limit, polarity. */
 void led_duties(uint16_t duty[3], uint16_t hue, const led_settings_t *settings);

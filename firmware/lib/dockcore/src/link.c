@@ -10,24 +10,23 @@ static const struct {
     {MAVLINK_MSG_ID_PARAM_REQUEST_LIST, link_on_parameter_list},
     {MAVLINK_MSG_ID_PARAM_REQUEST_READ, link_on_parameter_read},
     {MAVLINK_MSG_ID_PARAM_SET, link_on_parameter_set},
-    {MAVLINK_MSG_ID_PARAM_EXT_REQUEST_LIST, link_on_typed_list},
-    {MAVLINK_MSG_ID_PARAM_EXT_REQUEST_READ, link_on_typed_read},
+    {MAVLINK_MSG_ID_PARAM_EXT_REQUEST_LIST, link_on_parameter_list},
+    {MAVLINK_MSG_ID_PARAM_EXT_REQUEST_READ, link_on_parameter_read},
     {MAVLINK_MSG_ID_PARAM_EXT_SET, link_on_typed_set},
-    {MAVLINK_MSG_ID_COMMAND_LONG, link_on_command_long},
-    {MAVLINK_MSG_ID_COMMAND_INT, link_on_command_int},
+    {MAVLINK_MSG_ID_COMMAND_LONG, link_on_command},
+    {MAVLINK_MSG_ID_COMMAND_INT, link_on_command},
     {MAVLINK_MSG_ID_DATA_TRANSMISSION_HANDSHAKE, link_on_handshake},
     {MAVLINK_MSG_ID_ENCAPSULATED_DATA, link_on_packet},
 };
 
 /* Who sends first.  Where a message does not fit, those below it wait. */
 static link_sender_t *const senders[] = {
-    link_send_acks,       /* a host waits for its answer */
-    link_send_texts,      /* and for the reason of a refusal */
-    link_send_reports,    /* small, and due by the clock */
-    link_send_parameters, /* many, but soon over */
-    link_send_typed,      /* the same for the other protocol */
-    link_send_echo,       /* before the image that it would wait for */
-    link_send_snapshot,   /* takes as long as the line needs for 39 KB */
+    link_send_acks,     /* a host waits for its answer */
+    link_send_texts,    /* and for the reason of a refusal */
+    link_send_reports,  /* small, and due by the clock */
+    link_send_values,   /* many, but soon over */
+    link_send_echo,     /* before the image that it would wait for */
+    link_send_snapshot, /* takes as long as the line needs for 39 KB */
 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -63,6 +62,7 @@ size_t link_transmit(dock_t *dock, uint8_t *bytes, size_t capacity,
     sender_t sender = {bytes, 0, capacity, &dock->link.sequence,
                        dock->link.system};
     link_expire_snapshot(&dock->link, now_ms);
+    link_expire_injection(&dock->link, now_ms);
     for (size_t i = 0; i < COUNT(senders); i++)
         if (!senders[i](dock, &sender, now_ms))
             break;

@@ -102,26 +102,35 @@ typedef struct {
     uint32_t heard_ms; /* when the host's last handshake or packet came */
 } link_injection_t;
 
-/* Which parameters are to be sent, and whose turn it is. */
+/* The ways in which a parameter's value goes out, those first that are sent
+ * first. */
+typedef enum {
+    VALUE_FLOAT,     /* PARAM_VALUE, a float */
+    VALUE_WHOLE,     /* PARAM_VALUE, a whole number as an integer */
+    VALUE_TYPED_ACK, /* PARAM_EXT_ACK, to PARAM_EXT_SET */
+    VALUE_TYPED,     /* PARAM_EXT_VALUE */
+    VALUE_FORMS
+} value_form_t;
+
+/* link_values.c: which parameters are to be sent, and whose turn it is. */
 typedef struct {
     uint32_t due; /* a bit each */
     uint8_t next;
 } link_turn_t;
 
-/* link_typed.c: the extended parameter protocol. */
+/* link_parameters.c, but for the turns; a bit for each parameter. */
 typedef struct {
-    link_turn_t values;
-    link_turn_t answers; /* to PARAM_EXT_SET */
-    uint32_t refused;    /* a bit each: what the answer says */
-} link_typed_t;
+    link_turn_t turns[VALUE_FORMS];
+    uint32_t refused; /* what PARAM_EXT_ACK says of the last PARAM_EXT_SET */
+    uint32_t floats;  /* MAVSDK set it as a float, and reads it as one */
+} link_parameters_t;
 
 typedef struct {
-    uint8_t system;         /* dock.c: MAVLink's, until the next start */
-    receiver_t receiver;    /* link.c */
-    uint8_t sequence;       /* link.c: number of the next message out */
-    uint32_t faults;        /* link_count_fault: messages refused */
-    link_turn_t parameters; /* link_parameters.c: values to be sent */
-    link_typed_t typed;
+    uint8_t system;      /* dock.c: MAVLink's, until the next start */
+    receiver_t receiver; /* link.c */
+    uint8_t sequence;    /* link.c: number of the next message out */
+    uint32_t faults;     /* link_count_fault: messages refused */
+    link_parameters_t parameters;
     uint16_t interval_of; /* link_reports.c: the message whose interval a
                              host wants to know */
     link_texts_t texts;

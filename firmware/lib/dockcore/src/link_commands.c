@@ -1,3 +1,4 @@
+#include <stddef.h>
 #include <string.h>
 
 #include "link_order.h"
@@ -12,7 +13,8 @@ static uint8_t store(dock_t *dock, const order_t *order)
         link_answer_save_later(&dock->link, &later);
         return MAV_RESULT_IN_PROGRESS;
     case 2: /* back to the defaults; not yet in flash */
-        link_reset_parameters(dock);
+        link_reset_settings(dock);
+        link_values_due(&dock->link, VALUE_FLOAT, LINK_ALL_VALUES);
         return MAV_RESULT_ACCEPTED;
     default:
         return MAV_RESULT_DENIED;
@@ -77,35 +79,26 @@ static void obey(dock_t *dock, const order_t *order, bool to_all)
     link_acknowledge(&dock->link, &ack);
 }
 
-/* The four arguments come first in either message. */
-static order_t order_of(uint16_t command, const void *arguments,
-                        const received_t *message, uint32_t now_ms)
-{
-    order_t order = {.command = command,
-                     .system = message->system,
-                     .component = message->component,
-                     .now_ms = now_ms};
-    memcpy(order.argument, arguments, sizeof order.argument);
-    return order;
-}
+#define SAME_PLACE(field)                       \
+    (offsetof(mavlink_command_long_t, field) == \
+     offsetof(mavlink_command_int_t, field))
 
-void link_on_command_long(dock_t *dock, const received_t *message,
-                          uint32_t now_ms)
+_Static_assert(SAME_PLACE(param1) && SAME_PLACE(param4) &&
+                   SAME_PLACE(command) && SAME_PLACE(target_system) &&
+                   SAME_PLACE(target_component),
+               "link_on_command reads either message");
+
+/* What COMMAND_LONG and COMMAND_INT have in common; the place that the second
+ * one has besides means nothing to a dock. */
+void link_on_command(dock_t *dock, const received_t *message, uint32_t now_ms)
 {
     mavlink_command_long_t c;
     message_read(&c, sizeof c, message);
-    const order_t order = order_of(c.command, &c, message, now_ms);
-    if (link_is_for_us(&dock->link, c.target_system, c.target_component))
-        obey(dock, &order, c.target_system == 0);
-}
-
-/* The place that it has besides means nothing to a dock. */
-void link_on_command_int(dock_t *dock, const received_t *message,
-                         uint32_t now_ms)
-{
-    mavlink_command_int_t c;
-    message_read(&c, sizeof c, message);
-    const order_t order = order_of(c.command, &c, message, now_ms);
+    order_t order = {.command = c.command,
+                     .system = message->system,
+                     .component = message->component,
+                     .now_ms = now_ms};
+    memcpy(order.argument, &c, sizeof order.argument);
     if (link_is_for_us(&dock->link, c.target_system, c.target_component))
         obey(dock, &order, c.target_system == 0);
 }

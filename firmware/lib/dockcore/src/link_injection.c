@@ -22,12 +22,11 @@ static frame_t injected_frame(const dock_t *dock, const link_image_t *image)
                      image->height,      format,      0};
 }
 
-bool link_injection_lasts(link_t *link, uint32_t now_ms)
+void link_expire_injection(link_t *link, uint32_t now_ms)
 {
     link_injection_t *injection = &link->injection;
     if (now_ms - injection->heard_ms > INJECTION_MS)
         injection->state = INJECTION_OFF;
-    return injection->state != INJECTION_OFF;
 }
 
 /* Goes on injecting, if it did, but without a frame that is announced. */

@@ -1,15 +1,33 @@
-/* MAVLink's parameter protocol: all values travel as floats. */
+/* MAVLink's two parameter protocols: what a host asks for and sets.  In the
+ * first one a value is four bytes, a float or an integer; the extended one says
+ * of each value which it is. */
+#include <stddef.h>
 #include <string.h>
 
 #include "link_parts.h"
-#include "parameter_table.h"
 #include "real32.h"
 
-_Static_assert(PARAMETER_COUNT <= 32, "a bit each in link_turn_t");
-#define ALL_PARAMETERS ((uint32_t)((UINT64_C(1) << PARAMETER_COUNT) - 1))
 #define NOT_A_NUMBER UINT32_C(0x7FC00000)
 
-uint32_t link_integer_of(uint32_t bits, uint8_t type)
+/* The system number that MAVSDK takes unless its user gives it another.  Its
+ * set_param_int and get_param_int read a parameter first and go on only where
+ * the answer is an integer; see link.md. */
+#define MAVSDK_SYSTEM 245
+
+_Static_assert(sizeof(mavlink_param_request_list_t) ==
+                       sizeof(mavlink_param_ext_request_list_t) &&
+                   sizeof(mavlink_param_request_read_t) ==
+                       sizeof(mavlink_param_ext_request_read_t) &&
+                   offsetof(mavlink_param_request_read_t, param_id) ==
+                       offsetof(mavlink_param_ext_request_read_t, param_id),
+               "both protocols ask in the same way");
+_Static_assert((int)MAV_PARAM_EXT_TYPE_INT32 == MAV_PARAM_TYPE_INT32 &&
+                   (int)MAV_PARAM_EXT_TYPE_UINT8 == MAV_PARAM_TYPE_UINT8,
+               "integer_of takes either");
+
+/* An integer of a MAV_PARAM_TYPE that begins with these bytes, as bits of an
+ * IEEE 754 number; NOT_A_NUMBER for the other types. */
+static uint32_t integer_of(uint32_t bits, uint8_t type)
 {
     switch (type) {
     case MAV_PARAM_TYPE_UINT8:
@@ -29,53 +47,40 @@ uint32_t link_integer_of(uint32_t bits, uint8_t type)
     }
 }
 
-/* The number that a PARAM_SET carries, as bits of an IEEE 754 one.  Some hosts
- * cast every value to a float; others put an integer's own bytes there and say
- * so by its type.  The two cannot be confused: an integer below 2^23, more than
- * any parameter needs, has the bytes of a float that is subnormal or none, and
- * no integer's float is either.  Bytes like that without an integer's type are
- * refused: as a float they would count as zero. */
-static uint32_t number_of(uint32_t bits, uint8_t type)
+/* What a PARAM_SET carries.  Some hosts cast every value to a float; others put
+ * an integer's own bytes there and say so by its type.  The two cannot be
+ * confused: an integer below 2^23, more than any parameter needs, has the bytes
+ * of a float that is subnormal or none, and no integer's float is either.  Zero
+ * has the same bytes in both: its type decides.  Bytes of neither are not a
+ * number: as a float they would count as zero. */
+typedef struct {
+    uint32_t number; /* bits of an IEEE 754 number */
+    bool whole;      /* it came as an integer's own bytes */
+} carried_t;
+
+static carried_t carried_by(uint32_t bits, uint8_t type)
 {
     const uint32_t exponent = bits >> 23 & 0xFF;
     const bool zero = bits << 1 == 0;
-    if (zero || (exponent != 0 && exponent != 0xFF))
-        return bits;
-    return link_integer_of(bits, type);
+    const bool is_float = zero || (exponent != 0 && exponent != 0xFF);
+    const uint32_t integer = integer_of(bits, type);
+    return (carried_t){is_float ? bits : integer,
+                       integer != NOT_A_NUMBER && (zero || !is_float)};
 }
 
-void link_turn_all(link_turn_t *turn)
+/* Answers a list or a read about these parameters, a bit each. */
+static void answer(link_t *link, const received_t *message, uint32_t which)
 {
-    turn->due = ALL_PARAMETERS;
-}
-
-void link_turn_one(link_turn_t *turn, int index)
-{
-    turn->due |= UINT32_C(1) << index;
-}
-
-/* Begins where it stopped: whoever asks for all of them again and again, on a
- * slow line, gets the last ones too. */
-bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
-                       link_send_one_t *send_one)
-{
-    for (; turn->due != 0;
-         turn->next = (uint8_t)((turn->next + 1) % PARAMETER_COUNT)) {
-        const uint32_t bit = UINT32_C(1) << turn->next;
-        if ((turn->due & bit) == 0)
-            continue;
-        if (!send_one(dock, turn->next, sender))
-            return false;
-        turn->due &= ~bit;
+    const bool typed = message->id == MAVLINK_MSG_ID_PARAM_EXT_REQUEST_LIST ||
+                       message->id == MAVLINK_MSG_ID_PARAM_EXT_REQUEST_READ;
+    const uint32_t whole =
+        message->system == MAVSDK_SYSTEM ? which & ~link->parameters.floats : 0;
+    if (typed) {
+        link_values_due(link, VALUE_TYPED, which);
+        return;
     }
-    turn->next = 0;
-    return true;
-}
-
-void link_reset_parameters(dock_t *dock)
-{
-    link_reset_settings(dock);
-    link_turn_all(&dock->link.parameters);
+    link_values_due(link, VALUE_WHOLE, whole);
+    link_values_due(link, VALUE_FLOAT, which & ~whole);
 }
 
 void link_on_parameter_list(dock_t *dock, const received_t *message,
@@ -86,7 +91,7 @@ void link_on_parameter_list(dock_t *dock, const received_t *message,
     message_read(&request, sizeof request, message);
     if (link_is_for_us(&dock->link, request.target_system,
                        request.target_component))
-        link_turn_all(&dock->link.parameters);
+        answer(&dock->link, message, LINK_ALL_VALUES);
 }
 
 void link_on_parameter_read(dock_t *dock, const received_t *message,
@@ -101,7 +106,24 @@ void link_on_parameter_read(dock_t *dock, const received_t *message,
     const int index = link_asked_parameter(&dock->link, request.param_index,
                                            request.param_id);
     if (index >= 0)
-        link_turn_one(&dock->link.parameters, index);
+        answer(&dock->link, message, UINT32_C(1) << index);
+}
+
+/* Index of a parameter that this dock is to set; -1 for none. */
+static int find_to_set(link_t *link, uint8_t system, uint8_t component,
+                       const char name[16])
+{
+    if (!link_is_for_this(link, system, component))
+        return -1;
+    const int index = link_find_parameter(link, name);
+    if (index < 0)
+        link_count_fault(link);
+    return index;
+}
+
+static void put_bit(uint32_t *bits, uint32_t bit, bool set)
+{
+    *bits = set ? *bits | bit : *bits & ~bit;
 }
 
 void link_on_parameter_set(dock_t *dock, const received_t *message,
@@ -110,38 +132,37 @@ void link_on_parameter_set(dock_t *dock, const received_t *message,
     (void)now_ms;
     mavlink_param_set_t request;
     message_read(&request, sizeof request, message);
-    if (!link_is_for_this(&dock->link, request.target_system,
-                          request.target_component))
+    const int index = find_to_set(&dock->link, request.target_system,
+                                  request.target_component, request.param_id);
+    if (index < 0)
         return;
-    const int index = link_find_parameter(&dock->link, request.param_id);
-    if (index < 0) {
-        link_count_fault(&dock->link);
-        return;
-    }
     uint32_t bits;
     memcpy(&bits, &request.param_value, sizeof bits);
-    link_set_parameter(dock, index, number_of(bits, request.param_type));
-    /* The value as it is now, refused or not: that is the answer. */
-    link_turn_one(&dock->link.parameters, index);
+    const carried_t carried = carried_by(bits, request.param_type);
+    const uint32_t bit = UINT32_C(1) << index;
+    link_set_parameter(dock, index, carried.number);
+    if (message->system == MAVSDK_SYSTEM)
+        put_bit(&dock->link.parameters.floats, bit, !carried.whole);
+    /* The value as it is now, refused or not, in the way that it came. */
+    link_values_due(&dock->link, carried.whole ? VALUE_WHOLE : VALUE_FLOAT,
+                    bit);
 }
 
-static bool send_value(const dock_t *dock, uint16_t index, sender_t *sender)
-{
-    const parameter_t *parameter = &PARAMETERS[index];
-    const uint32_t shown = parameter_to_real32(
-        parameter, parameter_get(parameter, &dock->settings));
-    mavlink_param_value_t value;
-    memset(&value, 0, sizeof value);
-    memcpy(&value.param_value, &shown, sizeof shown);
-    memcpy(value.param_id, parameter->name, strlen(parameter->name));
-    value.param_type = MAV_PARAM_TYPE_REAL32;
-    value.param_count = PARAMETER_COUNT;
-    value.param_index = index;
-    return MESSAGE_SEND(sender, PARAM_VALUE, &value);
-}
-
-bool link_send_parameters(dock_t *dock, sender_t *sender, uint32_t now_ms)
+void link_on_typed_set(dock_t *dock, const received_t *message, uint32_t now_ms)
 {
     (void)now_ms;
-    return link_send_in_turn(dock, &dock->link.parameters, sender, send_value);
+    mavlink_param_ext_set_t request;
+    message_read(&request, sizeof request, message);
+    const int index = find_to_set(&dock->link, request.target_system,
+                                  request.target_component, request.param_id);
+    if (index < 0)
+        return;
+    uint32_t bits;
+    memcpy(&bits, request.param_value, sizeof bits);
+    if (request.param_type != MAV_PARAM_EXT_TYPE_REAL32)
+        bits = integer_of(bits, request.param_type);
+    const uint32_t bit = UINT32_C(1) << index;
+    put_bit(&dock->link.parameters.refused, bit,
+            !link_set_parameter(dock, index, bits));
+    link_values_due(&dock->link, VALUE_TYPED_ACK, bit);
 }

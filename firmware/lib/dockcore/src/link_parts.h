@@ -37,7 +37,7 @@ bool link_has_answered(const link_t *link); /* every command but a save */
 link_sender_t link_send_acks;
 
 /* link_commands.c */
-link_handler_t link_on_command_long, link_on_command_int;
+link_handler_t link_on_command; /* long or int */
 
 /* link_settings.c: both return an index, or say that there is none: -1. */
 int link_find_parameter(link_t *link, const char name[16]);
@@ -46,24 +46,15 @@ bool link_set_parameter(dock_t *dock, int index, uint32_t real32); /* or says
                                                         why it does not */
 void link_reset_settings(dock_t *dock); /* to the defaults */
 
-/* link_parameters.c */
-typedef bool link_send_one_t(const dock_t *dock, uint16_t index,
-                             sender_t *sender);
+/* link_parameters.c: the first two for either protocol */
 link_handler_t link_on_parameter_list, link_on_parameter_read,
-    link_on_parameter_set;
-link_sender_t link_send_parameters;
-void link_reset_parameters(dock_t *dock); /* to the defaults; reports all */
-void link_turn_all(link_turn_t *turn);
-void link_turn_one(link_turn_t *turn, int index);
-bool link_send_in_turn(dock_t *dock, link_turn_t *turn, sender_t *sender,
-                       link_send_one_t *send_one);
-/* An integer of a MAV_PARAM_TYPE that begins with these bytes, as bits of an
- * IEEE 754 number; not a number for the other types. */
-uint32_t link_integer_of(uint32_t bits, uint8_t type);
+    link_on_parameter_set, link_on_typed_set;
 
-/* link_typed.c */
-link_handler_t link_on_typed_list, link_on_typed_read, link_on_typed_set;
-link_sender_t link_send_typed;
+/* link_values.c */
+#define LINK_ALL_VALUES UINT32_MAX
+void link_values_due(link_t *link, value_form_t form,
+                     uint32_t which); /* a bit for each parameter */
+link_sender_t link_send_values;
 
 /* link_images.c: what snapshots and injected frames have in common. */
 #define PACKET MAVLINK_MSG_ENCAPSULATED_DATA_FIELD_DATA_LEN
@@ -82,7 +73,8 @@ link_sender_t link_send_snapshot;
 
 /* link_injection.c */
 link_handler_t link_on_handshake, link_on_packet;
-bool link_injection_lasts(link_t *link, uint32_t now_ms); /* or ends it */
+void link_expire_injection(link_t *link, uint32_t now_ms); /* of a silent host
+                                                            */
 link_sender_t link_send_echo;
 
 /* link_reports.c */

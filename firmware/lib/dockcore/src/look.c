@@ -6,14 +6,14 @@
 #define LIT_SHARE 49
 #define FIRST_PAUSE_MS (LIT_SHARE * UINT32_C(200))
 #define CLEAR_PAUSE_MS 60000
-/* Decisions that come every ten seconds are averaged over a minute. */
-#define DARK_WINDOW_MS 60000
 /* Markers of a dark frame and of a lit one, where the lamps change nothing. */
 #define SAME_HUE (3 * METHOD_HUE_RANGE / 360)
 /* The water's hue and that of the lamps, where it may be theirs. */
 #define OWN_HUE (30 * METHOD_HUE_RANGE / 360)
 /* So long in a row frames may be odd before they are doubted. */
 #define DOUBT_MS 1000
+/* A state that is older counts as this old, or its age would wrap. */
+#define OLDEST_MS 86400000
 
 void look_init(look_t *look)
 {
@@ -41,6 +41,8 @@ static void end_look(look_t *look, uint32_t now_ms)
 
 void look_turn(look_t *look, look_lamps_t lamps, uint32_t now_ms)
 {
+    if (now_ms - look->since_ms > OLDEST_MS)
+        look->since_ms = now_ms - OLDEST_MS;
     if (look->state == LOOK_UNLIT && lamps.lit)
         go_on(look, LOOK_LIT, now_ms);
     if (!lamps.follows)
@@ -107,7 +109,8 @@ static void after_failure(look_t *look, decision_t *decision,
     if (look->lit.value >= DECISION_DIM_VALUE && !own)
         look->clear = true;
     else
-        decision_take_none(decision, settings, DARK_WINDOW_MS, now_ms);
+        decision_take_none(decision, settings, DECISION_NIGHT_WINDOW_MS,
+                           now_ms);
 }
 
 static void lit_frame(look_t *look, decision_t *decision,
@@ -124,8 +127,8 @@ static void lit_frame(look_t *look, decision_t *decision,
     const bool taken = (look->clear || !follows) &&
                        decision_take(decision, settings->window_ms, now_ms);
     if (!follows || (!own && (taken || !decision_is_dim(decision))))
-        look->plain_ms = now_ms;
-    else if (now_ms - look->plain_ms >= DOUBT_MS)
+        hold_begin(&look->odd, now_ms);
+    else if (hold_ends(&look->odd, DOUBT_MS, HOLD_FRAMES, now_ms))
         doubt(look, decision);
 }
 
@@ -138,10 +141,11 @@ static void dark_frame(look_t *look, decision_t *decision,
     else
         doubt(look, decision);
     look->failed = false;
-    decision_take(decision, look->clear ? settings->window_ms : DARK_WINDOW_MS,
+    decision_take(decision,
+                  look->clear ? settings->window_ms : DECISION_NIGHT_WINDOW_MS,
                   now_ms);
     end_look(look, now_ms);
-    look->plain_ms = now_ms;
+    hold_begin(&look->odd, now_ms);
 }
 
 void look_frame(look_t *look, decision_t *decision,
@@ -150,7 +154,7 @@ void look_frame(look_t *look, decision_t *decision,
 {
     if (look->state == LOOK_UNLIT || !decision->decided) {
         decision_take(decision, settings->window_ms, now_ms);
-        look->plain_ms = now_ms;
+        hold_begin(&look->odd, now_ms);
         look->dark = seen_in(decision);
         look->dark.known = look->state == LOOK_UNLIT;
         return;

@@ -35,7 +35,8 @@ typedef struct {
 
 typedef struct {
     look_state_t state;
-    uint32_t since_ms; /* the state's first moment */
+    uint32_t since_ms; /* the state's first moment, or a day ago if that is
+                          later */
     uint32_t dark_ms;  /* how long the last look took */
     uint32_t pause_ms; /* from the end of a look to the next */
     bool due;          /* the lamps go out at the next turn */
@@ -43,8 +44,8 @@ typedef struct {
     bool clear;        /* frames in the lamps' light decide too */
     look_seen_t dark;  /* the last frame without the lamps' light */
     look_seen_t lit;   /* the last frame in the lamps' light */
-    uint32_t plain_ms; /* when one last looked otherwise than the lamps, and
-                          like the water before */
+    hold_t odd;        /* of frames that look like the lamps, or unlike the
+                          water before */
 } look_t;
 
 void look_init(look_t *look);

@@ -44,11 +44,11 @@ extern const uint32_t METHOD_HUE_DIVISION[256];
 extern const uint32_t METHOD_SATURATION_DIVISION[256];
 extern const int16_t METHOD_SINE[1920];
 extern const uint8_t METHOD_ARCTANGENT[1025];
-extern const uint16_t METHOD_GAMMA[1024];
+extern const uint16_t METHOD_GAMMA[768];
 extern const uint16_t METHOD_MARKER_HUE[147];
 extern const uint32_t METHOD_HUE_DIVISION_180[256];
 extern const uint32_t METHOD_HUE_DIVISION_256[256];
-extern const uint32_t METHOD_MEAN_RED_OR_BLUE[125];
+extern const uint8_t METHOD_MEAN_RED_OR_BLUE[125];
 extern const uint32_t METHOD_MEAN_GREEN[253];
 
 #endif

@@ -34,7 +34,7 @@ static inline uint32_t mean_pixel(uint32_t upper, uint32_t lower)
     const uint32_t red = odd & 0x7F;
     const uint32_t green = (even & 0x1F) * 8 + (odd >> 10 & 0x1F);
     const uint32_t blue = even >> 8 & 0x7F;
-    return (METHOD_MEAN_RED_OR_BLUE[red] << PIXEL_RED_SHIFT) +
+    return ((uint32_t)METHOD_MEAN_RED_OR_BLUE[red] << PIXEL_RED_SHIFT) +
            METHOD_MEAN_GREEN[green] + METHOD_MEAN_RED_OR_BLUE[blue];
 }
 

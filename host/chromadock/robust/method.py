@@ -64,9 +64,9 @@ class RobustMethod:
             candidates = sorted((c for found in by_scale for c in found), key=lambda c: -c.evidence)
         watch.lap("search")
         prior = view.prior(look.R_expected, look.R_covariance)
-        measure = Measure(
-            frame_bgr, response, view, prior, turn, self._dock.largest_range_m or np.inf
-        )
+        dock = self._dock
+        farthest, judged = dock.largest_range_m or np.inf, dock.judged - dock.centre
+        measure = Measure(frame_bgr, response, view, prior, turn, farthest, judged)
         best = measure.best(candidates)
         if best is None and look.incomplete:
             best = measure.incomplete(peaks)

@@ -21,6 +21,6 @@ def test_only_errors_beyond_those_of_the_places_are_a_misfit(
     evidence: float, error_px: float, told: bool
 ) -> None:
     """Else the command line would say "0 pixels off: check the calibration"."""
-    measure = Measure(NOTHING, NOTHING, NOTHING, NOTHING, 1 + 0j, np.inf)
+    measure = Measure(NOTHING, NOTHING, NOTHING, NOTHING, 1 + 0j, np.inf, NOTHING)
     measure._note(evidence, error_px, np.full(4, 0.4))
     assert [m.error_px for m in measure.misfits] == ([error_px] if told else [])

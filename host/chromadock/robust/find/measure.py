@@ -53,8 +53,9 @@ class Measure:
     """One frame and what is known of it.
 
     ``frame_bgr`` (H, W, 3) uint8; ``prior``: of the dock's pose; ``upright``: see ``View``;
-    ``largest_range_m``: a dock farther away is none.  ``misfits`` receives what stood like a dock
-    and does not fit.
+    ``largest_range_m``: a dock farther away is none.  ``judged`` (3,): metres, in the frame of the
+    view's markers: see ``DockGeometry.judged``.  ``misfits`` receives what stood like a dock and
+    does not fit.
     """
 
     frame_bgr: NDArray[np.uint8]
@@ -63,6 +64,7 @@ class Measure:
     prior: PosePrior
     upright: complex
     largest_range_m: float
+    judged: NDArray[np.float64]
     misfits: list[Misfit] = field(default_factory=list)
 
     def best(self, candidates: list[Candidate]) -> Constellation | None:
@@ -174,11 +176,11 @@ class Measure:
     def _doubt(
         self, sighting: Sighting, poses: tuple[Estimate, ...], weights: NDArray[np.float64]
     ) -> float:
-        """Probability that the place of the first of the poses is wrong."""
-        roughly = doubt(poses, weights.tolist())
+        """Probability that the first of the poses has the dock at a wrong place."""
+        roughly = doubt([pose.about(self.judged) for pose in poses], weights.tolist())
         if roughly < NO_DOUBT:
             return roughly
-        finely = doubt_over_tilts(sighting, poses[0], self.prior)
+        finely = doubt_over_tilts(sighting, poses[0], self.prior, self.judged)
         return roughly if finely is None else finely
 
     def _note(self, evidence: float, error_px: float, sigma_px: NDArray[np.float64]) -> None:

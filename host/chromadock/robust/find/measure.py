@@ -70,6 +70,7 @@ class Measure:
     def best(self, candidates: list[Candidate]) -> Constellation | None:
         """The dock: the candidate with most evidence, or what it is an image of."""
         accepted: list[Constellation] = []
+        cells: list[int] = []
         likely = sum(c.evidence >= LIKELY for c in candidates[:MAX_TRIALS])
         for candidate in candidates[: likely + 1]:
             # Where no likely one is the dock one more is worth the time.
@@ -80,9 +81,11 @@ class Measure:
             constellation = self._accepted(candidate)
             if constellation is not None:
                 accepted.append(constellation)
+                cells.append(candidate.cell)
         if not accepted:
             return None
-        best = max(accepted, key=lambda c: c.evidence)
+        first = max(range(len(accepted)), key=lambda k: accepted[k].evidence)
+        best = _best_placed(accepted[first], cells[first], accepted)
         originals = [c for c in accepted if is_image_of(best, c, self.view.camera)]
         return max(originals, key=lambda c: c.evidence) if originals else best
 
@@ -263,6 +266,17 @@ def _downhill(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimat
         if pose is not None and not any(same_rotation(pose.R, other.R) for other in found):
             found.append(pose)
     return tuple(sorted(found, key=lambda pose: pose.chi_square)) or estimates(sighting)
+
+
+def _best_placed(best: Constellation, cell: int, others: list[Constellation]) -> Constellation:
+    """That of ``others`` with the best known places which is the same dock as ``best``, found in
+    cells ``cell`` pixels wide: each marker within two of these cells.
+
+    What a dock's bars add to coarse cells is evidence for a dock here too, but the corners of bars
+    are not where the lamps are.
+    """
+    same = [c for c in others if np.linalg.norm(c.xy - best.xy, axis=1).max() < 2 * cell]
+    return min(same, key=lambda c: float(c.sigma_px.mean()))
 
 
 def _overlap(a: NDArray[np.float64], b: NDArray[np.float64], cell: int) -> bool:

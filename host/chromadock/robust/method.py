@@ -75,8 +75,10 @@ class RobustMethod:
             best = measure.about(priors, peaks)
         watch.lap("pose")
         found = self._report(frame_bgr, best, peaks, response)
+        if best is not None:
+            return replace(found, misfit=best.misfit)
         misfit = max(measure.misfits, key=lambda m: m.evidence, default=None)
-        return found if best is not None else replace(found, misfit=misfit)
+        return replace(found, misfit=misfit)
 
     def _view_of(self, camera: CameraModel) -> View:
         if self._view is None or not self._view.is_of(camera):

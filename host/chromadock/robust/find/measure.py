@@ -33,13 +33,13 @@ from chromadock.robust.weigh.tilts import doubt_over_tilts
 from chromadock.robust.weigh.twin import is_image_of
 
 MISFIT_DECADES = 8.0
-"""Evidence of the search's from which on a set of peaks that is no rigid dock deserves a word: no
-photograph without a dock has as much."""
+"""Evidence from which on a set of peaks that is no rigid dock deserves a word: that of the search
+where the places do not admit it for a dock at all.  No photograph without a dock has as much."""
 
-MISFIT_ERRORS = 2.0
-"""Standard errors of a place, root mean square, beyond which markers do not fit: chi-square 16 with
-the two degrees of freedom that four markers leave, one in 3,000.  What fits better was not taken
-for another reason, and neither the dock's file nor the calibration would mend it."""
+MISFIT_ERRORS = 2.5
+"""Standard errors of a place, root mean square, beyond which markers do not fit: chi-square 25 with
+the two degrees of freedom that four markers leave, one in 300,000.  What fits better is right, or
+was not taken for another reason, and neither the dock's file nor the calibration would mend it."""
 
 MAX_CHOICES = 3
 """Places of each of four markers that are tried in every combination; of more markers two."""
@@ -145,8 +145,9 @@ class Measure:
         # So many places to choose from are so many chances for clutter.
         evidence = placed.log_density + candidate.looks - float(np.log(len(xy)))
         if evidence < LEAST_EVIDENCE:
-            self._note(candidate.evidence, poses[0].reprojection_px, sigma[k])
+            self.misfits.extend(filter(None, [misfit(candidate.evidence, poses, sigma[k])]))
             return None
+        amiss = misfit(evidence, poses, sigma[k])
         poses, weights, sighting = _again(sighting, poses, placed)
         if self._too_far(poses):
             return None
@@ -155,7 +156,7 @@ class Measure:
             return None
         markers = np.arange(len(self.view.points))
         unsure = self._doubt(sighting, wide, weights)
-        return Constellation(markers, xy[k], sighting.sigma_px, evidence, wide, unsure)
+        return Constellation(markers, xy[k], sighting.sigma_px, evidence, wide, unsure, amiss)
 
     def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
         """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
@@ -186,14 +187,6 @@ class Measure:
         finely = doubt_over_tilts(sighting, poses[0], self.prior, self.judged)
         return roughly if finely is None else finely
 
-    def _note(self, evidence: float, error_px: float, sigma_px: NDArray[np.float64]) -> None:
-        """What stood like a dock by the search's natural log of evidence, but is no rigid dock: its
-        root mean square error is beyond what those of its places, ``sigma_px`` (n,), explain."""
-        decades = evidence / float(np.log(10))
-        known_px = float(np.sqrt(np.mean(sigma_px**2)))
-        if decades >= MISFIT_DECADES and error_px > MISFIT_ERRORS * known_px:
-            self.misfits.append(Misfit(decades, error_px))
-
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
     ) -> Constellation | None:
@@ -216,13 +209,15 @@ class Measure:
         evidence = guess.evidence if guess.looks is None else placed.log_density + guess.looks
         if evidence < LEAST_FOR_A_TRACK:
             return None
+        whole = len(guess.markers) == len(self.view.points)
+        amiss = misfit(evidence, poses, sigma) if whole else None
         poses, weights, sighting = _again(sighting, poses, placed)
         if self._too_far(poses):
             return None
         poses = poses if priors else tuple(widened(sighting, pose) for pose in poses)
         # About a track's pose the track says how sure the place is.
         unsure = 0.0 if priors else self._doubt(sighting, poses, weights)
-        return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure)
+        return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure, amiss)
 
     def _refined(
         self,
@@ -234,6 +229,20 @@ class Measure:
         # All markers shine in one colour: they are looked at through the filter of most of them.
         [(common, _)] = Counter(best.tolist()).most_common(1)
         return refined(self.frame_bgr, xy, cell, self.response.weights[common][None], noise)
+
+
+def misfit(
+    evidence: float, poses: tuple[Estimate, ...], sigma_px: NDArray[np.float64]
+) -> Misfit | None:
+    """What stands like a dock, by its natural log of evidence, but is no rigid dock: by the best of
+    its poses the root mean square error is beyond what those of its places, ``sigma_px`` (n,),
+    explain.  None of what fits."""
+    decades = evidence / float(np.log(10))
+    error_px = poses[0].reprojection_px
+    known_px = float(np.sqrt(np.mean(sigma_px**2)))
+    if decades < MISFIT_DECADES or error_px <= MISFIT_ERRORS * known_px:
+        return None
+    return Misfit(decades, error_px)
 
 
 def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

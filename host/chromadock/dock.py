@@ -86,6 +86,19 @@ class DockGeometry:
         return np.asarray(self.points.mean(axis=0), np.float64)
 
     @cached_property
+    def judged(self) -> NDArray[np.float64]:
+        """(3,) metres, dock frame: the point by whose place a pose is judged right or wrong.
+
+        The origin, since the place that is told is its own.  Where the user put that farther from
+        the centroid than any marker, the point so far away in its direction: a docking point many
+        metres off goes aside with each degree of the dock's attitude, and is no reason to withhold
+        the pose of a dock that is well known itself.
+        """
+        away = float(np.linalg.norm(self.centre))
+        reach = float(np.linalg.norm(self.points - self.centre, axis=1).max())
+        return self.centre * (1 - min(1.0, reach / away)) if away > 0 else np.zeros(3)
+
+    @cached_property
     def symmetries(self) -> tuple[Symmetry, ...]:
         """Turns after which the dock looks the same: see ``symmetry.symmetries``.
 

@@ -241,3 +241,12 @@ def test_a_dock_cannot_be_changed_behind_its_back():
     with pytest.raises(ValueError, match="read-only"):
         dock.points[0, 0] = 1
     assert np.array_equal(dock.points, DockGeometry.default().points)
+
+
+def test_a_pose_is_judged_by_the_origin_or_the_point_of_the_dock_towards_it():
+    square = np.array([[1.0, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
+    names = ("a", "b", "c", "d")
+    near, far = np.array([0.5, 0.0, -1.0]), np.array([0.0, 0.0, -20.0])
+    assert DockGeometry(names, square).judged == pytest.approx(np.zeros(3))
+    assert DockGeometry(names, square - near).judged == pytest.approx(np.zeros(3))
+    assert DockGeometry(names, square - far).judged == pytest.approx([0, 0, 20 - np.sqrt(2)])

@@ -26,8 +26,8 @@ _DISAGREEMENT_DEG = 75.0
 """The mean of so many tracked frames says whether dock and vehicle agree: single ones err by
 more, and water and crosstalk turn the light of a dock that agrees by up to about 60 degrees."""
 
-_MISFIT_FRAMES = 3
-"""One frame may be a chance."""
+_MISFIT_FRAMES, _MISFIT_SHARE = 3, 1 / 3
+"""One frame may be a chance, and in a long run some frames are; of a file that is off, most."""
 
 _AGES = 100_000
 """So many of the newest pictures' ages are kept: an hour's at 30 frames a second."""
@@ -54,7 +54,9 @@ class Report:
         self._tracked = 0
         self._off: list[complex] = []
         self._clipped = 0
+        self._seen = 0
         self._misfits = 0
+        self._misfit_told = False
         self._ages_s: deque[float] = deque(maxlen=_AGES)
 
     def frame(self, frame: Frame, detection: Detection, age_s: float | None = None) -> None:
@@ -92,12 +94,15 @@ class Report:
                     f"{stops} stop{'s' if stops > 1 else ''} (to 1/{2**stops}), or dim the dock, "
                     "for a range that is more exact"
                 )
+        self._seen += detection.markers is not None or detection.misfit is not None
         if detection.misfit is not None:
             self._misfits += 1
-            if self._misfits == _MISFIT_FRAMES:
+            often = self._misfits >= max(_MISFIT_FRAMES, _MISFIT_SHARE * self._seen)
+            if often and not self._misfit_told:
+                self._misfit_told = True
                 self._aside(
                     f"warning: something stands like the dock ({detection.misfit.evidence:.0f} "
-                    f"decades of evidence), but {detection.misfit.error_px:.0f} pixels off: check "
+                    f"decades of evidence), but {detection.misfit.error_px:.2g} pixels off: check "
                     "the markers in --dock and the calibration in --camera"
                 )
 

@@ -59,7 +59,8 @@ class Blob:
 
 @dataclass(frozen=True, slots=True)
 class Misfit:
-    """Something that stands like a dock but is none as the dock's file has it.
+    """Something that stands like the dock, but not as its file and the calibration have it; it may
+    be found all the same.
 
     ``evidence``: decades by which the places, strengths and colours speak for a dock;
     ``error_px``: root mean square distance of its markers from those of the rigid dock.

@@ -65,9 +65,9 @@ class RobustMethod:
             candidates = sorted((c for found in by_scale for c in found), key=lambda c: -c.evidence)
         watch.lap("search")
         prior = view.prior(look.R_expected, look.R_covariance)
-        measure = Measure(
-            frame_bgr, response, view, prior, turn, self._dock.largest_range_m or np.inf
-        )
+        dock = self._dock
+        farthest, judged = dock.largest_range_m or np.inf, dock.judged - dock.centre
+        measure = Measure(frame_bgr, response, view, prior, turn, farthest, judged)
         best = measure.best(candidates)
         if best is None and look.incomplete:
             best = measure.incomplete(searched)
@@ -76,8 +76,11 @@ class RobustMethod:
             best = measure.about(priors, peaks)
         watch.lap("pose")
         found = self._report(frame_bgr, best, peaks, response)
-        misfit = max(measure.misfits, key=lambda m: m.evidence, default=None)
-        return found if best is not None or misfit is None else replace(found, misfit=misfit)
+        if best is not None:
+            misfit = best.misfit
+        else:
+            misfit = max(measure.misfits, key=lambda m: m.evidence, default=None)
+        return found if misfit is None else replace(found, misfit=misfit)
 
     def _view_of(self, camera: CameraModel) -> View:
         if self._view is None or not self._view.is_of(camera):

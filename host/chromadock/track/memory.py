@@ -67,9 +67,10 @@ class Memory:
         locked = self.locked
         return None if locked is None or time_s - locked.measured_s > KEPT_S else locked
 
-    def track(self, time_s: float, origin: Floats) -> Track:
+    def track(self, time_s: float, origin: Floats, judged: Floats) -> Track:
         """Run on to ``time_s``, or that of the newest frame if it is before; of a dock frame with
-        its origin at ``origin`` (3,) of the bank's."""
+        its origin at ``origin`` (3,) of the bank's, and sure or not by the place of ``judged``
+        (3,), in the bank's frame too: see ``DockGeometry.judged``."""
         time_s = max(time_s, -math.inf if self.time_s is None else self.time_s)
         seen, locked = self.last_seen_s, self.locked
         age_s = None if seen is None else time_s - seen
@@ -81,7 +82,7 @@ class Memory:
         if locked is None or state not in ("tracking", "recently_lost"):
             return Track(state, time_s, age_s=age_s)
         bank = locked.after(time_s - locked.time_s)
-        if not locked.sure or bank.doubt > MOST_DOUBT_UNSEEN:
+        if not locked.sure or bank.about(judged).doubt > MOST_DOUBT_UNSEEN:
             return Track("acquiring" if state == "tracking" else state, time_s, age_s=age_s)
         hypotheses = bank.about(origin).hypotheses
         return following(state, time_s, hypotheses, time_s - locked.measured_s)

@@ -72,7 +72,13 @@ class Sight:
     def telling(self) -> bool:
         """Whether it is all of the dock, or so much that it says as much as all of four markers:
         three places fit anywhere in several ways, more of them do not."""
-        return self.whole or len(self.markers.pixels) > MIN_MARKERS
+        return self.whole or not self.exact
+
+    @property
+    def exact(self) -> bool:
+        """Whether poses fit its places without any error, whatever their errors are: three markers
+        have as many numbers as a pose."""
+        return len(self.markers.pixels) == MIN_MARKERS
 
     def misnamed(self, dock: DockGeometry, R: NDArray[np.float64], t: NDArray[np.float64]) -> bool:
         """Whether markers stand where others of the dock are by a pose (3, 3), (3,).

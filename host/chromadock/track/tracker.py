@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
@@ -31,9 +32,10 @@ CORRELATION_S = 0.2
 """Frames closer than this share their errors, by the same pixels under a marker and the same
 waves, and count together for one frame."""
 
-PARTIAL_CORRELATION_S = 1.0
-"""The same with a marker out: what is left of a systematic error of a tenth of a pixel, half a
-degree of a whole dock's attitude, is ten degrees then, and no number of frames makes it less."""
+BARE_CORRELATION_S = 1.0
+"""The same with a marker out, and of a dock that has three markers only: a systematic error of a
+tenth of a pixel is half a degree of attitude where four markers are seen, and ten degrees of three.
+No number of frames makes it less, and three markers fit so well that nothing tells of it."""
 
 FACING_CORRELATION_S = 7.0
 """The same of the dock's attitude as the vehicle expects it: mounting and course last, so the
@@ -65,6 +67,7 @@ class Tracker:
 
     def __init__(self, dock: DockGeometry, mounting: Mounting | None = None) -> None:
         self._centre = dock.centre
+        self._judged = dock.judged - dock.centre
         self._dock = replace(dock, points=dock.points - dock.centre)
         self._told = mounting
         self._mounting = mounting_or_default(mounting)
@@ -116,7 +119,7 @@ class Tracker:
         if sight is not None and after is None and plan.everywhere:
             known = [c for c in memory.candidates if evidence < c.evidence]
             if not any(sight.misnamed(self._dock, *c.pose(time_s)) for c in known):
-                memory = _proposed(memory, sight, evidence, time_s)
+                memory = _proposed(memory, sight, evidence, time_s, self._judged)
         # Published at once, when all is done: see ``at``.
         self._memory = memory
         return self.at(time_s)
@@ -127,7 +130,7 @@ class Tracker:
         At a time before the newest frame's it is that of the newest.  Any thread may ask while
         another is in ``update``: the answer is wholly by the frames before that one or by it too.
         """
-        return self._memory.track(time_s, -self._centre)
+        return self._memory.track(time_s, -self._centre, self._judged)
 
     def _prediction(self, memory: Memory, time_s: float) -> Prediction | None:
         """Of the locked dock at this frame's time, with what the vehicle knows; of one that has
@@ -186,7 +189,8 @@ class Tracker:
         if after is None:
             return None
         bank, swift = after[0].doubting(sight), after[1]
-        sure = bank.doubt <= (MOST_DOUBT_KEPT if locked.sure else MOST_DOUBT)
+        doubt = bank.about(self._judged).doubt
+        sure = doubt <= (MOST_DOUBT_KEPT if locked.sure else MOST_DOUBT)
         return replace(
             memory,
             locked=Locked(bank, time_s, time_s, sight.whole, evidence, sure, swift),
@@ -248,8 +252,13 @@ def _unseen(memory: Memory, predicted: Prediction | None, time_s: float) -> Memo
     return replace(memory, locked=locked, faced_s=predicted.faced_s)
 
 
-def _proposed(memory: Memory, sight: Sight, evidence: float, time_s: float) -> Memory:
-    """With a dock where none is locked: a new candidate, one more frame of one, or the lock."""
+def _proposed(
+    memory: Memory, sight: Sight, evidence: float, time_s: float, judged: NDArray[np.float64]
+) -> Memory:
+    """With a dock where none is locked: a new candidate, one more frame of one, or the lock.
+
+    ``judged`` (3,): metres, in the filter's dock frame: see ``DockGeometry.judged``.
+    """
     candidates = list(memory.candidates)
     for i, candidate in enumerate(candidates):
         new = sight.worth(_share(sight, time_s - candidate.time_s))
@@ -264,7 +273,7 @@ def _proposed(memory: Memory, sight: Sight, evidence: float, time_s: float) -> M
     rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
     if not after.locked(rival):
         return replace(memory, candidates=tuple(candidates))
-    sure = after.bank.doubt <= MOST_DOUBT
+    sure = after.bank.about(judged).doubt <= MOST_DOUBT
     return replace(
         memory,
         locked=Locked(after.bank, time_s, time_s, sight.whole, evidence, sure),
@@ -276,4 +285,5 @@ def _proposed(memory: Memory, sight: Sight, evidence: float, time_s: float) -> M
 
 def _share(sight: Sight, elapsed_s: float) -> float:
     """How much of a frame is new after the last."""
-    return min(1.0, elapsed_s / (CORRELATION_S if sight.whole else PARTIAL_CORRELATION_S))
+    lasting_s = CORRELATION_S if sight.whole and not sight.exact else BARE_CORRELATION_S
+    return min(1.0, elapsed_s / lasting_s)

@@ -32,7 +32,9 @@ class Exact(Measure):
 def best_of(*candidates: Candidate) -> tuple[Constellation | None, list[int]]:
     MEASURED.clear()
     view = cast(Any, type("V", (), {"camera": None}))
-    best = Exact(NOTHING, NOTHING, view, NOTHING, 1 + 0j, np.inf).best(list(candidates))
+    best = Exact(NOTHING, NOTHING, view, NOTHING, 1 + 0j, np.inf, np.zeros(3)).best(
+        list(candidates)
+    )
     return best, list(MEASURED)
 
 

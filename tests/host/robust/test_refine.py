@@ -143,3 +143,29 @@ def test_where_no_lamp_is_near_there_is_no_place() -> None:
     frame = np.rint(255 * slope ** (1 / 2.2)).astype(np.uint8)
     weights = np.array([[0.0, 0.0, 1.0]], np.float32)
     assert refined(frame, np.array([(80.0, 80.0), (120.0, 80.0)]), 4, weights, np.ones(2)) is None
+
+
+@pytest.mark.parametrize("cell", [8, 16])
+def test_the_corner_of_bright_bars_is_no_sure_place_of_the_lamp_that_stands_on_it(
+    cell: int,
+) -> None:
+    """Smoothed as wide as coarse cells, the corner's own light is what is seen of it."""
+    rng = np.random.default_rng(8)
+    y, x = np.mgrid[0:320, 0:420].astype(float)
+    places = np.array([(100.0, 100.0), (320.0, 100.0)])
+    light = np.tile(np.array([0.5, 0.3, 0.02]), (320, 420, 1))
+    half = cell / 4
+    across = (np.abs(y - 100) < half) & (x > 100 - half) & (x < 320 + half)
+    down = (np.minimum(np.abs(x - 100), np.abs(x - 320)) < half) & (y > 100 - half)
+    light[across | down] = 0.4
+    for px, py in places:
+        core = np.exp(-0.5 * (np.hypot(x - px, y - py) / LENS_PX) ** 2)
+        light += 0.2 * core[..., None] * np.array([0.05, 0.1, 1.0])
+    encoded = 255 * np.clip(light, 0, 1) ** (1 / 2.2) + rng.normal(0, 2, light.shape)
+    frame = np.clip(np.rint(encoded), 0, 255).astype(np.uint8)
+    found = refined(frame, places, cell, seen(frame).weights[:1], np.ones(2) * 0.1)
+    assert found is not None
+    off = [np.linalg.norm(tops.xy[0] - p) for tops, p in zip(found, places, strict=True)]
+    sigma = [tops.sigma[0] for tops in found]
+    assert min(off) > 1
+    assert max(np.array(off) / sigma) < 4

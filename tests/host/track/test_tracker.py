@@ -3,6 +3,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from track_run import HZ, Run, Seen, nothing
 from track_truth import CAMERA, DOCK, NOTHING, Pose, approach, found, rotation
 
 from chromadock import Attitude, DockGeometry, Tracker
-from chromadock.geometry.pose import lever
+from chromadock.geometry.pose import Sighting, estimates, lever
 from chromadock.look import Found
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.track.candidate import (
@@ -264,12 +265,15 @@ def test_the_track_can_be_asked_for_any_later_time(run: Run) -> None:
 
 @pytest.mark.parametrize("shift", [(0.0, -2.0, 0.0), (0.0, 0.0, -1.0), (-2.0, 0.5, 1.0)])
 def test_it_does_not_matter_where_the_dock_has_its_origin(shift: tuple[float, ...]) -> None:
-    """The same pixels: at each moment the same dock, its covariance carried to the origin."""
+    """The same pixels: at each moment the same dock, its covariance carried to the origin.  Only
+    when a pose is first told may differ, for how surely the place is known is asked of another
+    point of the dock."""
     origin = np.array(shift)
     moved = DockGeometry(DOCK.names, DOCK.points - origin)
     trackers = Tracker(DOCK), Tracker(moved)
     rng = np.random.default_rng(4)
-    for k in range(40):
+    compared = 0
+    for k in range(80):
         time_s = k / HZ
         R, t = approach(time_s)
         names = DOCK.names if k % 7 else DOCK.names[1:]
@@ -283,11 +287,14 @@ def test_it_does_not_matter_where_the_dock_has_its_origin(shift: tuple[float, ..
             priors.append(plan.priors)
             tracks.append(tracker.update(time_s, plan, told, CAMERA, attitude))
         near, far = tracks
-        assert near.state == far.state
+        assert near.state == far.state or {near.state, far.state} == {"tracking", "acquiring"}
         for a, b in zip(*priors, strict=True):
             b = b.about(-origin)
             np.testing.assert_allclose(b.t, a.t, atol=1e-6)
             np.testing.assert_allclose(b.covariance, a.covariance, rtol=1e-3, atol=1e-8)
+        if near.pose is None or far.pose is None:
+            continue
+        compared += 1
         for one, other in ((near.pose, far.pose), (near.alternative, far.alternative)):
             assert (one is None) == (other is None)
             if one is None or other is None:
@@ -299,7 +306,8 @@ def test_it_does_not_matter_where_the_dock_has_its_origin(shift: tuple[float, ..
             J = lever(-R @ origin)
             spread = J @ np.reshape(other.covariance, (6, 6)) @ J.T
             np.testing.assert_allclose(spread.ravel(), one.covariance, rtol=1e-3, atol=1e-9)
-    assert near.state == "tracking"
+    assert compared > 10
+    assert near.state == far.state == "tracking"
     assert near.velocity == pytest.approx(far.velocity, abs=1e-6)
 
 
@@ -342,3 +350,53 @@ def test_a_dock_whose_range_is_not_known_yet_is_locked_without_a_pose() -> None:
     run = Run()
     states = [run.frame(lambda t, p: found(near, run.rng)).state for _ in range(8)]
     assert states[-1] == "tracking"
+
+
+def test_a_pose_is_told_where_the_origin_is_not_as_sure_as_the_centroid() -> None:
+    """Of three markers that leave two attitudes open, far apart, the centroid is at one place and
+    a marker at two."""
+    told = {}
+    for name, shift in (("centroid", DOCK.points[:3].mean(axis=0)), ("marker", DOCK.points[1])):
+        three = DockGeometry(DOCK.names[:3], DOCK.points[:3] - shift)
+        tracker, rng, told[name] = Tracker(three), np.random.default_rng(2), 0
+        for k in range(40):
+            seen = found((rotation(0, 25), np.array([0.1, 0.0, 2.0])), rng, names=three.names)
+            poses = tuple(pose.about(shift) for pose in seen.estimates)
+            told_now = replace(seen, state="found", estimates=poses)
+            track = tracker.update(0.1 * k, tracker.plan(0.1 * k), told_now, CAMERA)
+            told[name] += track.pose is not None
+    assert told["marker"] < told["centroid"]
+
+
+def test_frames_that_share_their_errors_do_not_make_three_markers_sure(
+    record_property: Any,
+) -> None:
+    """Three places fit with any error in common: after many frames the range is still unsure."""
+    three = DockGeometry(DOCK.names[:3], DOCK.points[:3])
+    R, t = rotation(5, 25), np.array([0.1, 0.0, 2.5])
+    inside = []
+    for seed in range(16):
+        rng = np.random.default_rng(seed)
+        shared = rng.normal(0, 0.3, (3, 2))
+        tracker = Tracker(three)
+        for k in range(60):
+            at = CAMERA.project(three.points @ R.T + t) + shared + rng.normal(0, 0.02, (3, 2))
+            poses = estimates(Sighting(three.points, at, np.full(3, 0.1), CAMERA))
+            markers = dict(zip(three.names, map(tuple, at.tolist()), strict=True))
+            seen = Found(
+                "found", 0.0, markers=markers, estimates=poses, evidence=9.0, sigma_px=(0.1,) * 3
+            )
+            tracker.update(0.1 * k, tracker.plan(0.1 * k), seen, CAMERA)
+        locked = tracker._memory.locked
+        assert locked is not None
+        place = t + R @ three.centre
+        states = [h.state for h in locked.bank.hypotheses]
+        square = min(
+            (s.t - place) @ np.linalg.solve(s.covariance[:3, :3], s.t - place) for s in states
+        )
+        inside.append(square < 7.81)
+    share = float(np.mean(inside))
+    record_property(
+        "figure", f"track: three markers that share their errors, the place is right in {share:.2f}"
+    )
+    assert share >= 0.8

@@ -35,13 +35,13 @@ from chromadock.robust.weigh.tilts import doubt_over_tilts
 from chromadock.robust.weigh.twin import is_image_of
 
 MISFIT_DECADES = 8.0
-"""Evidence of the search's from which on a set of peaks that is no rigid dock deserves a word: no
-photograph without a dock has as much."""
+"""Evidence from which on a set of peaks that is no rigid dock deserves a word: that of the search
+where the places do not admit it for a dock at all.  No photograph without a dock has as much."""
 
-MISFIT_ERRORS = 2.0
-"""Standard errors of a place, root mean square, beyond which markers do not fit: chi-square 16 with
-the two degrees of freedom that four markers leave, one in 3,000.  What fits better was not taken
-for another reason, and neither the dock's file nor the calibration would mend it."""
+MISFIT_ERRORS = 2.5
+"""Standard errors of a place, root mean square, beyond which markers do not fit: chi-square 25 with
+the two degrees of freedom that four markers leave, one in 300,000.  What fits better is right, or
+was not taken for another reason, and neither the dock's file nor the calibration would mend it."""
 
 MAX_CHOICES = 3
 """Places of each of four markers that are tried in every combination; of more markers two."""
@@ -58,8 +58,9 @@ class Measure:
     """One frame and what is known of it.
 
     ``frame_bgr`` (H, W, 3) uint8; ``prior``: of the dock's pose; ``upright``: see ``View``;
-    ``largest_range_m``: a dock farther away is none.  ``misfits`` receives what stood like a dock
-    and does not fit.
+    ``largest_range_m``: a dock farther away is none.  ``judged`` (3,): metres, in the frame of the
+    view's markers: see ``DockGeometry.judged``.  ``misfits`` receives what stood like a dock and
+    does not fit.
     """
 
     frame_bgr: NDArray[np.uint8]
@@ -68,11 +69,13 @@ class Measure:
     prior: PosePrior
     upright: complex
     largest_range_m: float
+    judged: NDArray[np.float64]
     misfits: list[Misfit] = field(default_factory=list)
 
     def best(self, candidates: list[Candidate]) -> Constellation | None:
         """The dock: the candidate with most evidence, or what it is an image of."""
         accepted: list[Constellation] = []
+        cells: list[int] = []
         likely = sum(c.evidence >= LIKELY for c in candidates[:MAX_TRIALS])
         for candidate in candidates[: likely + 1]:
             # Where no likely one is the dock one more is worth the time.
@@ -83,9 +86,12 @@ class Measure:
             constellation = self._accepted(candidate)
             if constellation is not None:
                 accepted.append(constellation)
+                cells.append(candidate.cell)
         if not accepted:
             return None
-        best = max(accepted, key=lambda c: c.evidence)
+        first = max(range(len(accepted)), key=lambda k: accepted[k].evidence)
+        finer = [c for c, cell in zip(accepted, cells, strict=True) if cell < cells[first]]
+        best = _best_placed(accepted[first], cells[first], finer)
         # No lamp is a lamp of the image, too.
         others = [c for c in accepted if not _shared(best.xy, c.xy, SAME_PLACE_PX).any()]
         originals = [c for c in others if is_image_of(best, c, self.view.camera)]
@@ -145,8 +151,9 @@ class Measure:
         # So many places to choose from are so many chances for clutter.
         evidence = placed.log_density + candidate.looks - float(np.log(len(xy)))
         if evidence < LEAST_EVIDENCE:
-            self._note(candidate.evidence, poses[0].reprojection_px, sigma[k])
+            self.misfits.extend(filter(None, [misfit(candidate.evidence, poses, sigma[k])]))
             return None
+        amiss = misfit(evidence, poses, sigma[k])
         poses, weights, sighting = _again(sighting, poses, placed)
         if self._too_far(poses):
             return None
@@ -155,7 +162,7 @@ class Measure:
             return None
         markers = np.arange(len(self.view.points))
         unsure = self._doubt(sighting, wide, weights)
-        return Constellation(markers, xy[k], sighting.sigma_px, evidence, wide, unsure)
+        return Constellation(markers, xy[k], sighting.sigma_px, evidence, wide, unsure, amiss)
 
     def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
         """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
@@ -179,20 +186,12 @@ class Measure:
     def _doubt(
         self, sighting: Sighting, poses: tuple[Estimate, ...], weights: NDArray[np.float64]
     ) -> float:
-        """Probability that the place of the first of the poses is wrong."""
-        roughly = doubt(poses, weights.tolist())
+        """Probability that the first of the poses has the dock at a wrong place."""
+        roughly = doubt([pose.about(self.judged) for pose in poses], weights.tolist())
         if roughly < NO_DOUBT:
             return roughly
-        finely = doubt_over_tilts(sighting, poses[0], self.prior)
+        finely = doubt_over_tilts(sighting, poses[0], self.prior, self.judged)
         return roughly if finely is None else finely
-
-    def _note(self, evidence: float, error_px: float, sigma_px: NDArray[np.float64]) -> None:
-        """What stood like a dock by the search's natural log of evidence, but is no rigid dock: its
-        root mean square error is beyond what those of its places, ``sigma_px`` (n,), explain."""
-        decades = evidence / float(np.log(10))
-        known_px = float(np.sqrt(np.mean(sigma_px**2)))
-        if decades >= MISFIT_DECADES and error_px > MISFIT_ERRORS * known_px:
-            self.misfits.append(Misfit(decades, error_px))
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
@@ -216,13 +215,15 @@ class Measure:
         evidence = guess.evidence if guess.looks is None else placed.log_density + guess.looks
         if evidence < LEAST_FOR_A_TRACK:
             return None
+        whole = len(guess.markers) == len(self.view.points)
+        amiss = misfit(evidence, poses, sigma) if whole else None
         poses, weights, sighting = _again(sighting, poses, placed)
         if self._too_far(poses):
             return None
         poses = poses if priors else tuple(widened(sighting, pose) for pose in poses)
         # About a track's pose the track says how sure the place is.
         unsure = 0.0 if priors else self._doubt(sighting, poses, weights)
-        return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure)
+        return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure, amiss)
 
     def _refined(
         self,
@@ -234,6 +235,20 @@ class Measure:
         # All markers shine in one colour: they are looked at through the filter of most of them.
         [(common, _)] = Counter(best.tolist()).most_common(1)
         return refined(self.frame_bgr, xy, cell, self.response.weights[common][None], noise)
+
+
+def misfit(
+    evidence: float, poses: tuple[Estimate, ...], sigma_px: NDArray[np.float64]
+) -> Misfit | None:
+    """What stands like a dock, by its natural log of evidence, but is no rigid dock: by the best of
+    its poses the root mean square error is beyond what those of its places, ``sigma_px`` (n,),
+    explain.  None of what fits."""
+    decades = evidence / float(np.log(10))
+    error_px = poses[0].reprojection_px
+    known_px = float(np.sqrt(np.mean(sigma_px**2)))
+    if decades < MISFIT_DECADES or error_px <= MISFIT_ERRORS * known_px:
+        return None
+    return Misfit(decades, error_px)
 
 
 def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -279,3 +294,14 @@ def _outdone(candidate: Candidate, accepted: Constellation) -> bool:
 def _shared(a: NDArray[np.float64], b: NDArray[np.float64], near_px: float) -> NDArray[np.bool_]:
     """(n,) which of the places (n, 2) are also among (m, 2) others."""
     return np.asarray((np.linalg.norm(a[:, None] - b[None], axis=2) < near_px).any(axis=1))
+
+
+def _best_placed(best: Constellation, cell: int, finer: list[Constellation]) -> Constellation:
+    """``best``, found in cells ``cell`` pixels wide, or that of the sets found in ``finer`` cells
+    which is the same dock, each marker within two of the wider cells, and has better known places.
+
+    What a dock's bars add to coarse cells is evidence for a dock here too, but the corners of bars
+    are not where the lamps are.
+    """
+    same = [c for c in finer if np.linalg.norm(c.xy - best.xy, axis=1).max() < 2 * cell]
+    return min([best, *same], key=lambda c: float(c.sigma_px.mean()))

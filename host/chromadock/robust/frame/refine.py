@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import cv2
@@ -51,6 +51,12 @@ INFLATION = 1.4
 # Bend over height of a top at the least width, in steps: of a lamp that falls between the
 # mosaic's samples, and of one spread over several; the share of SAMPLING that is left then.
 _SHARP, _BLUNT, _LEAST_SAMPLING = 0.37, 0.1, 0.4
+
+DRIFT = 1.0
+"""Standard error of a place, in its top's way from one smoothing to the next one half an octave
+narrower or wider, whichever is shorter.  The top of a round lamp stays where it is; that of the
+corner of two bright bars, or of a lamp that a bar draws aside, goes on with each width, and is off
+by two or three such steps."""
 
 MAX_TOPS = 3
 """Places that a lamp is supposed in at most."""
@@ -141,12 +147,13 @@ def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
 @dataclass(frozen=True, slots=True)
 class _Top:
     """``at`` (x, y): steps in the patch; ``error``: standard, for noise of 1 a step; ``width``;
-    ``sharpness``: bend over height."""
+    ``sharpness``: bend over height; ``drift``: steps, see DRIFT."""
 
     at: tuple[float, float]
     error: float
     width: float
     sharpness: float
+    drift: float = 0.0
 
     @classmethod
     def of(cls, smooth: NDArray[np.float32], x: int, y: int, width: float) -> _Top | None:
@@ -250,26 +257,35 @@ def _smoothers(middle: int, around: int, count: int) -> NDArray[np.float32]:
 
 def _tops(patch: _Patch) -> list[_Top]:
     """Where the lamp may be: the best located top uphill of the middle, then others about."""
-    best = None
     sharpness = 0.0
+    by_width: list[_Top] = []
     for smooth, width in zip(patch.layers, patch.widths, strict=True):
         summit = _climbed(smooth, patch.middle, max(1, round(width)), patch.reach)
         top = None if summit is None else _Top.of(smooth, *summit, width)
         if top is None:
             continue
+        by_width.append(top)
         if width == WIDTHS[0]:
             sharpness = top.sharpness
-        if best is None or top.error < best.error:
-            best = top
-    if best is None:
+    if not by_width:
         return []
-    tops = [_Top(best.at, best.error, best.width, sharpness)]
+    best = min(by_width, key=lambda top: top.error)
+    tops = [replace(best, sharpness=sharpness, drift=_drift(best, by_width))]
     if len(patch.widths) <= _SMALL:
         for top in _others(patch):
             far = [math.dist(top.at, other.at) > WIDTHS[0] for other in tops]
             if all(far) and len(tops) < MAX_TOPS:
                 tops.append(top)
     return tops
+
+
+def _drift(best: _Top, by_width: list[_Top]) -> float:
+    """Steps from a top to that at the next width, narrower or wider: the shorter of both ways, for
+    a narrow smoothing is led astray by noise, and one wider than the lamp by what is beside it.  0
+    where there is no other."""
+    octaves = [abs(math.log2(top.width / best.width)) for top in by_width]
+    beside = [top for top, off in zip(by_width, octaves, strict=True) if 0 < off < 0.75]
+    return min((math.dist(best.at, top.at) for top in beside), default=0.0)
 
 
 def _others(patch: _Patch) -> Iterator[_Top]:
@@ -291,7 +307,8 @@ def _in_pixels(tops: list[_Top], corner: NDArray[np.intp], step: int, noise: flo
     for top in tops:
         sharp = (top.sharpness - _BLUNT) / (_SHARP - _BLUNT) if step == 1 else 0.0
         sampling = SAMPLING * min(max(sharp, _LEAST_SAMPLING), 1.0)
-        sigma.append(math.hypot(sampling, step * FLOOR * top.width, step * noise * top.error))
+        by_steps = math.hypot(FLOOR * top.width, noise * top.error, DRIFT * top.drift)
+        sigma.append(math.hypot(sampling, step * by_steps))
     at = np.array([top.at for top in tops])
     return Tops(corner + (at + 0.5) * step - 0.5, np.array(sigma))
 

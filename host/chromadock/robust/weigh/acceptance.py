@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock.geometry.pose import Estimate
+from chromadock.results.detection import Misfit
 
 FALSE_ALARM_RATE = 10**-5.5
 """Bound on the share of frames of Poisson clutter in which any set of peaks is taken for the
@@ -50,7 +51,7 @@ class Constellation:
 
     ``markers`` (k,): which of the dock's; ``xy`` (k, 2) pixels; ``sigma_px`` (k,): their standard
     deviations; ``evidence``: natural log of the likelihood ratio; ``poses``: one or two, the
-    better first; ``doubt``: see there.
+    better first; ``doubt``: see there; ``misfit``: where they stand like a dock, but not rigidly.
     """
 
     markers: NDArray[np.intp]
@@ -59,6 +60,7 @@ class Constellation:
     evidence: float
     poses: tuple[Estimate, ...]
     doubt: float = 0.0
+    misfit: Misfit | None = None
 
 
 class Placed(Protocol):

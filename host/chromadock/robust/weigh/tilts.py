@@ -26,8 +26,11 @@ _DAMPING = 1e-9  # of the trace of the information
 _LEAST_TILTS = 4.0  # that count: fewer, and the lattice is too coarse to integrate on
 
 
-def doubt_over_tilts(sighting: Sighting, told: Estimate, prior: PosePrior) -> float | None:
-    """Probability that the dock is not where ``told`` has it, to ``acceptance.PLACE_TOLERANCE``.
+def doubt_over_tilts(
+    sighting: Sighting, told: Estimate, prior: PosePrior, judged: Real
+) -> float | None:
+    """Probability that a point of the dock is not where ``told`` has it, to
+    ``acceptance.PLACE_TOLERANCE``; the point is ``judged`` (3,), metres, in the sighting's frame.
 
     None where the tilt is known so well that the lattice does not resolve it, or the markers are
     three, which leave open poses between which no tilts lie.
@@ -49,10 +52,14 @@ def doubt_over_tilts(sighting: Sighting, told: Estimate, prior: PosePrior) -> fl
     weights /= weights.sum()
     if 1 / (weights**2).sum() < _LEAST_TILTS:
         return None
+    arm = R @ judged
+    t = t + arm
     sight = t / np.linalg.norm(t, axis=1, keepdims=True)
-    place = np.linalg.inv(information)[:, :3, :3]
-    sigma = np.sqrt(np.einsum("mi,mij,mj->m", sight, place, sight))
-    return share_beyond(told.t, t, sigma, weights)
+    # How far the point moves along the line of sight by x, y, z and by the turn about the normal.
+    turned = np.einsum("mi,mi->m", sight, np.cross(R[:, :, 2], arm))
+    by_each = np.column_stack([sight, turned])
+    variance = np.einsum("mi,mij,mj->m", by_each, np.linalg.inv(information), by_each)
+    return share_beyond(told.t + told.R @ judged, t, np.sqrt(variance), weights)
 
 
 def _fitted(sighting: Sighting, told: Estimate, prior: PosePrior) -> tuple[Real, Real]:

@@ -131,8 +131,9 @@ class PinholeLens:
 
     def within_reach(self, points: Real) -> Real:
         """See ``Lens``."""
-        x, y, z = np.moveaxis(points, -1, 0)
-        return np.stack([x, y, np.maximum(z, _LEAST_DEPTH_M)], axis=-1)
+        near = np.array(points)
+        np.maximum(near[..., 2], _LEAST_DEPTH_M, out=near[..., 2])
+        return near
 
     def project(self, points: Real) -> tuple[Real, Real]:
         """See ``Lens``."""

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
+from chromadock.geometry.native import doubles
 from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, NEIGHBOURHOOD, Peaks
 from chromadock.robust.weigh import chroma, clutter
 
@@ -80,11 +81,6 @@ class PlacedPeaks:
 def room(size: int) -> Any:
     """Memory for so many bytes, aligned as numbers are; it lives as long as what is returned."""
     return doubles(np.empty(-(-size // ffi.sizeof("double"))))
-
-
-def doubles(values: Complex | Real) -> Any:
-    """The numbers of an array as a C array, which keeps their memory alive."""
-    return ffi.from_buffer("double[]", np.ascontiguousarray(values).view(np.float64))
 
 
 def evidence_of_sets(placed: PlacedPeaks, members: NDArray[np.intp], along: Real) -> Real:

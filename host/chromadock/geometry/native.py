@@ -13,4 +13,4 @@ from chromadock._native import ffi
 def doubles(values: NDArray[np.complex128] | NDArray[np.float64]) -> Any:
     """The numbers of an array as a C array, which keeps their memory alive: the array's own, if it
     is contiguous."""
-    return ffi.from_buffer("double[]", np.ascontiguousarray(values).view(np.float64))
+    return ffi.from_buffer("double[]", np.ascontiguousarray(values))

@@ -37,6 +37,8 @@ COUNTS: dict[str, tuple[int, ...]] = {
 PINHOLE_COUNTS = (0, 4, 5, 8, 12, 14)
 """Those that OpenCV's pinhole formula takes."""
 
+_ZERO = np.zeros(3)
+_PLACE_AND_TURN = np.array([3, 4, 5, 0, 1, 2])  # columns of OpenCV's derivatives
 _LEAST_DEPTH_M = 1e-3  # of a point that has to have some place in a flat picture
 # OpenCV's own default stops after five rounds, which leaves almost a pixel of error at
 # the corners of a wide lens.
@@ -131,22 +133,22 @@ class PinholeLens:
 
     def within_reach(self, points: Real) -> Real:
         """See ``Lens``."""
-        x, y, z = np.moveaxis(points, -1, 0)
-        return np.stack([x, y, np.maximum(z, _LEAST_DEPTH_M)], axis=-1)
+        near = np.array(points)
+        np.maximum(near[..., 2], _LEAST_DEPTH_M, out=near[..., 2])
+        return near
 
     def project(self, points: Real) -> tuple[Real, Real]:
         """See ``Lens``."""
-        zero = np.zeros(3)
-        pixels, derivatives = cv2.projectPoints(points, zero, zero, self.matrix, self.coefficients)
+        pixels, derivatives = cv2.projectPoints(
+            points, _ZERO, _ZERO, self.matrix, self.coefficients
+        )
         by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(-1, 2, 3)
         return np.asarray(pixels, np.float64).reshape(-1, 2), by_place
 
     def project_turned(self, arms: Real, t: Real) -> tuple[Real, Real]:
         """See ``Lens``: from a rotation of zero OpenCV's derivatives by it are by such turns."""
-        pixels, derivatives = cv2.projectPoints(
-            arms, np.zeros(3), t, self.matrix, self.coefficients
-        )
-        by_place_and_turn = np.asarray(derivatives, np.float64).take([3, 4, 5, 0, 1, 2], axis=1)
+        pixels, derivatives = cv2.projectPoints(arms, _ZERO, t, self.matrix, self.coefficients)
+        by_place_and_turn = np.asarray(derivatives, np.float64).take(_PLACE_AND_TURN, axis=1)
         return np.asarray(pixels, np.float64).reshape(-1, 2), by_place_and_turn.reshape(-1, 2, 6)
 
     def rays(self, pixels: Real) -> Real:

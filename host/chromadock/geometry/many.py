@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock._native import lib
+from chromadock.geometry.native import doubles
 from chromadock.geometry.pose import Sighting
 
 Real = NDArray[np.float64]
@@ -12,13 +14,9 @@ Real = NDArray[np.float64]
 
 def rotations(turns: Real) -> Real:
     """(M, 3, 3) rotations by (M, 3) rotation vectors, radians: Rodrigues' formula."""
-    angle = np.linalg.norm(turns, axis=1)[:, None, None] + 1e-12
-    x, y, z = turns.T
-    zero = np.zeros_like(x)
-    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
-    by_sine = np.sin(angle) / angle * cross
-    by_cosine = (1 - np.cos(angle)) / angle**2 * (cross @ cross)
-    return np.asarray(np.eye(3) + by_sine + by_cosine)
+    R = np.empty((len(turns), 3, 3))
+    lib.poses_rotations(len(turns), doubles(turns), doubles(R))
+    return R
 
 
 def rotation_vectors(R: Real) -> Real:
@@ -39,8 +37,8 @@ def errors(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]:
     # No marker is projected from where the lens does not see.
     seen = optics.within_reach(arms + t[:, None])
     pixels, derivatives = optics.project(seen.reshape(-1, 3))
-    by_place = derivatives.reshape(count, -1, 2, 3)
-    by_turn = np.cross(arms[:, :, None, :], by_place)
-    both = np.concatenate([by_place, by_turn], axis=3) / sighting.sigma_px[:, None, None]
-    off = (pixels.reshape(count, -1, 2) - sighting.pixels) / sighting.sigma_px[:, None]
-    return off.reshape(count, -1), both.reshape(count, -1, 6)
+    markers = len(sighting.sigma_px)
+    error, jacobian = np.empty((count, 2 * markers)), np.empty((count, 2 * markers, 6))
+    given = (arms, pixels, derivatives, sighting.pixels, sighting.sigma_px)
+    lib.poses_errors(count, markers, *map(doubles, (*given, error, jacobian)))
+    return error, jacobian

@@ -10,7 +10,9 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from chromadock._native import lib
 from chromadock.camera import CameraModel
+from chromadock.geometry.native import doubles
 from chromadock.results.pose import Pose
 from chromadock.rotation import quaternion_from_matrix
 
@@ -200,13 +202,10 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
     if now is None:
         return None
     for _ in range(_MAX_ROUNDS):
-        information, gradient = now.jacobian.T @ now.jacobian, now.jacobian.T @ now.error
-        damped = information + np.diag(damping * (information.diagonal() + 1e-12))
-        step = np.linalg.solve(damped, -gradient)
-        after = _Fit.of(sighting, np.asarray(cv2.Rodrigues(step[3:])[0]) @ R, t + step[:3])
+        after = _Fit.of(sighting, *now.stepped(damping))
         if after is not None and after.chi_square <= now.chi_square:
             gained = now.chi_square - after.chi_square
-            now, R, t = after, after.R, after.t
+            now = after
             damping = max(damping / 10, _LEAST_DAMPING)
             if gained < _CONVERGED:
                 break
@@ -216,6 +215,7 @@ def _refined(sighting: Sighting, R: NDArray[np.float64], t: NDArray[np.float64])
                 break
     else:
         return None
+    R, t = now.R, now.t
     depths = sighting.camera.optics.depth(sighting.points_dock @ R.T + t)
     width = np.ptp(sighting.points_dock, axis=0).max()
     if not (depths.min() > _NEAREST * width and depths.max() < _FARTHEST * width):
@@ -273,6 +273,14 @@ class _Fit:
             return None
         error, jacobian = errors
         return cls(R, t, error, jacobian, float(error @ error))
+
+    def stepped(self, damping: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The pose after a step downhill: see ``host/native/poses.h``."""
+        R, t = np.empty((3, 3)), np.empty(3)
+        given = map(doubles, (self.R, self.t, R, t))
+        errors = doubles(self.error), doubles(self.jacobian)
+        lib.poses_step(len(self.error), *errors, damping, *given)
+        return R, t
 
 
 def _of_three(sighting: Sighting) -> tuple[Estimate, ...]:

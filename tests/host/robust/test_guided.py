@@ -13,7 +13,7 @@ from chromadock.geometry.many import rotations
 from chromadock.geometry.pose import Estimate, Sighting, estimates, projected
 from chromadock.robust.find.guided import HIDDEN, Expectation, Guess
 from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.evidence import placed_along
+from chromadock.robust.weigh.evidence import PlacedPeaks, placed_along
 
 CAMERA = CameraModel.nominal(640, 480)
 POINTS = DockGeometry.default().points
@@ -40,7 +40,8 @@ def expectation(points: np.ndarray, prior: Estimate) -> Expectation:
 
 
 def guided(points: np.ndarray, prior: Estimate, peaks: Peaks, sigma_px: float) -> Guess | None:
-    return expectation(points, prior).guess(peaks, sigma_px)
+    placed = PlacedPeaks(peaks.xy, peaks, float(CAMERA.width * CAMERA.height))
+    return expectation(points, prior).guess(placed, sigma_px)
 
 
 def plainly(prior: Estimate, peaks: Peaks, sigma_px: float) -> dict[tuple[int, ...], float]:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
 from chromadock.camera import CameraModel
+from chromadock.geometry.native import doubles
 from chromadock.geometry.pose import MIN_MARKERS, Estimate, projected
-from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.evidence import PlacedPeaks, doubles
+from chromadock.robust.weigh.evidence import PlacedPeaks
 
 HIDDEN: float = lib.GUIDED_HIDDEN
 """How often a marker is out or behind something."""
@@ -57,7 +57,6 @@ class Expectation:
         prior: Estimate,
         camera: CameraModel,
     ) -> None:
-        self._area = float(camera.width * camera.height)
         seen = projected(points_dock, prior.R, prior.t, camera)
         self._places = None if seen is None else seen[0]
         if seen is None:
@@ -86,18 +85,12 @@ class Expectation:
         np.fill_diagonal(apart, np.inf)
         return float(apart.min())
 
-    def guess(self, peaks: Peaks, sigma_px: float) -> Guess | None:
-        """The best set of all markers, or of all but one, among peaks located to ``sigma_px``.
-
-        Raises
-        ------
-        ValueError
-            More peaks than C has room for.
-        """
+    def guess(self, placed: PlacedPeaks, sigma_px: float) -> Guess | None:
+        """The best set of all markers, or of all but one, among peaks at pixels, which are known to
+        ``sigma_px``."""
         if self._places is None:
             return None
         count = len(self._places)
-        placed = PlacedPeaks(peaks.xy, peaks, self._area)
         members = np.empty(count, np.int32)
         evidence = ffi.new("double *")
         if lib.guided_guess(

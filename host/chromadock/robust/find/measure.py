@@ -29,6 +29,7 @@ from chromadock.robust.weigh.acceptance import (
     Constellation,
     doubt,
 )
+from chromadock.robust.weigh.evidence import PlacedPeaks
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
 from chromadock.robust.weigh.shape import MIN_SPACING_CELLS
 from chromadock.robust.weigh.tilts import doubt_over_tilts
@@ -104,8 +105,9 @@ class Measure:
         """
         guesses: list[tuple[Guess, int, Peaks]] = []
         expectations: list[Expectation] = []
+        placed: dict[int, PlacedPeaks] = {}
+        view = self.view
         for prior in priors:
-            view = self.view
             expectation = Expectation(view.points, view.along, prior, view.camera)
             # The two poses of a plane differ in what they are, not in where the markers are.
             if any(expectation.like(other) for other in expectations):
@@ -115,7 +117,10 @@ class Measure:
             for cell, found in peaks.items():
                 if spacing_px < MIN_SPACING_CELLS * cell:
                     break  # two markers are one peak in cells so wide
-                guess = expectation.guess(found, PEAK_ERROR * cell)
+                if cell not in placed:
+                    area = float(view.camera.width * view.camera.height)
+                    placed[cell] = PlacedPeaks(found.xy, found, area)
+                guess = expectation.guess(placed[cell], PEAK_ERROR * cell)
                 if guess is not None and guess.evidence >= LEAST_FOR_A_TRACK:
                     guesses.append((guess, cell, found))
         guesses.sort(key=lambda g: g[0].evidence, reverse=True)

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
+from chromadock.geometry.native import doubles
 from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.evidence import PlacedPeaks, doubles, room
+from chromadock.robust.weigh.evidence import PlacedPeaks, room
 from chromadock.robust.weigh.shape import FACETS, Complex, Real, ShapeModel, Window
 
 MAX_SETS = 64
@@ -56,7 +57,8 @@ class SearchedPeaks(PlacedPeaks):
 
     def __init__(self, z: Complex | Real, peaks: Peaks, area: float) -> None:
         super().__init__(z, peaks, area)
-        self._bounds: dict[int, Any] = {}
+        # By the number of markers: as C has them, and the memory that they are in.
+        self._bounds: dict[int, tuple[Any, Any]] = {}
 
     def bounds(self, markers: int) -> Any:
         """What a search for a dock of so many markers is bounded by, as C has it.
@@ -67,20 +69,19 @@ class SearchedPeaks(PlacedPeaks):
             More promising peaks than C has room for.
         """
         if markers not in self._bounds:
-            self._bounds[markers] = room(lib.search_bounds_size())
+            memory = room(lib.search_bounds_size())
+            bounds = ffi.cast("search_bounds_t *", memory)
             promising = np.ascontiguousarray(self.peaks.promising, np.int32)
             if lib.search_prepare(
-                self._pointer(markers),
+                bounds,
                 self.native,
                 markers,
                 len(promising),
                 ffi.from_buffer("int32_t[]", promising),
             ):
                 raise ValueError(f"{len(promising)} promising peaks: too many")
-        return self._pointer(markers)
-
-    def _pointer(self, markers: int) -> Any:
-        return ffi.cast("search_bounds_t *", self._bounds[markers])
+            self._bounds[markers] = bounds, memory
+        return self._bounds[markers][0]
 
 
 class Search:

@@ -56,8 +56,9 @@ def _at_scale(response: Response, xy: NDArray[np.float64], scale: int) -> int | 
     if not whole.any():
         return None
     # What is behind a lamp: the second darkest of eight places about it.
-    around = response.light_at(at + (_RING * (response.layout.shape[1], 1)).sum(axis=1)[:, None])
-    added = (light - np.partition(around, 1, axis=0)[1])[whole].sum(axis=0)
+    ring = (_RING * (response.layout.shape[1], 1)).sum(axis=1)
+    around = response.light_at(at[whole] + ring[:, None])
+    added = (light[whole] - np.partition(around, 1, axis=0)[1]).sum(axis=0)
     whitened = np.linalg.solve(response.covariance, _PURE)
     answer = (added @ whitened) / np.sqrt((_PURE * whitened).sum(axis=0))
     best = int(answer.argmax())

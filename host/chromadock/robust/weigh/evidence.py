@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
+from chromadock.geometry.native import doubles
 from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, NEIGHBOURHOOD, Peaks
 from chromadock.robust.weigh import chroma, clutter
 
@@ -77,14 +78,13 @@ class PlacedPeaks:
             raise ValueError(f"{count} peaks: too many")
 
 
+# Zeros would be written for nothing: C fills in all that it reads.
+_unset = ffi.new_allocator(should_clear_after_alloc=False)
+
+
 def room(size: int) -> Any:
     """Memory for so many bytes, aligned as numbers are; it lives as long as what is returned."""
-    return doubles(np.empty(-(-size // ffi.sizeof("double"))))
-
-
-def doubles(values: Complex | Real) -> Any:
-    """The numbers of an array as a C array, which keeps their memory alive."""
-    return ffi.from_buffer("double[]", np.ascontiguousarray(values).view(np.float64))
+    return _unset("double[]", -(-size // ffi.sizeof("double")))
 
 
 def evidence_of_sets(placed: PlacedPeaks, members: NDArray[np.intp], along: Real) -> Real:

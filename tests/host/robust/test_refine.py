@@ -166,6 +166,6 @@ def test_the_corner_of_bright_bars_is_no_sure_place_of_the_lamp_that_stands_on_i
     found = refined(frame, places, cell, seen(frame).weights[:1], np.ones(2) * 0.1)
     assert found is not None
     off = [np.linalg.norm(tops.xy[0] - p) for tops, p in zip(found, places, strict=True)]
-    sigma = [tops.sigma[0] for tops in found]
+    sigma = [np.hypot(tops.sigma[0], tops.drift[0]) for tops in found]
     assert min(off) > 1
     assert max(np.array(off) / sigma) < 4

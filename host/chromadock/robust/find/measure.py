@@ -143,7 +143,7 @@ class Measure:
         tops = self._refined(found, candidate.cell, peaks.noise[members], peaks.best[members])
         if tops is None:
             return None
-        xy, sigma = _choices(tops)
+        xy, sigma, drift = _choices(tops)
         likely = self.view.log_shape(xy, sigma, self.upright) if len(xy) > 1 else np.zeros(1)
         k = int(likely.argmax())
         if on_one_thing(self.frame_bgr, xy[k]):
@@ -156,10 +156,11 @@ class Measure:
         # So many places to choose from are so many chances for clutter.
         evidence = placed.log_density + candidate.looks - float(np.log(len(xy)))
         if evidence < LEAST_EVIDENCE:
-            self.misfits.extend(filter(None, [misfit(candidate.evidence, poses, sigma[k])]))
+            amiss = misfit(candidate.evidence, poses, np.hypot(sigma[k], drift[k]))
+            self.misfits.extend(filter(None, [amiss]))
             return None
-        amiss = misfit(evidence, poses, sigma[k])
-        poses, weights, sighting = _again(sighting, poses, placed)
+        amiss = misfit(evidence, poses, np.hypot(sigma[k], drift[k]))
+        poses, weights, sighting = _again(sighting, poses, placed, drift[k])
         if self._too_far(poses):
             return None
         wide = tuple(widened(sighting, pose) for pose in poses)
@@ -208,7 +209,7 @@ class Measure:
             return None
         places = found if guess.expected is None else guess.expected
         nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
-        xy, sigma = (np.array(values) for values in zip(*nearest, strict=True))
+        xy, sigma, drift = (np.array(values) for values in zip(*nearest, strict=True))
         # Where a track has the dock its lamps may be so near that they run into each other.
         if not priors and on_one_thing(self.frame_bgr, xy):
             return None
@@ -221,8 +222,8 @@ class Measure:
         if evidence < LEAST_FOR_A_TRACK:
             return None
         whole = len(guess.markers) == len(self.view.points)
-        amiss = misfit(evidence, poses, sigma) if whole else None
-        poses, weights, sighting = _again(sighting, poses, placed)
+        amiss = misfit(evidence, poses, np.hypot(sigma, drift)) if whole else None
+        poses, weights, sighting = _again(sighting, poses, placed, drift)
         if self._too_far(poses):
             return None
         poses = poses if priors else tuple(widened(sighting, pose) for pose in poses)
@@ -256,24 +257,32 @@ def misfit(
     return Misfit(decades, error_px)
 
 
-def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """All ways to choose a place for each marker: (N, n, 2) places and their (N, n) errors."""
+def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], ...]:
+    """All ways to choose a place for each marker: (N, n, 2) places, their (N, n) errors and their
+    drifts."""
     each = MAX_CHOICES if len(tops) <= 4 else 2
-    xy = product(*(top.xy[:each] for top in tops))
-    sigma = product(*(top.sigma[:each] for top in tops))
-    return np.array(list(xy)), np.array(list(sigma))
+    of_all = [t.xy for t in tops], [t.sigma for t in tops], [t.drift for t in tops]
+    return tuple(np.array(list(product(*(of[:each] for of in values)))) for values in of_all)
 
 
 def _again(
-    sighting: Sighting, poses: tuple[Estimate, ...], placed: Placement
+    sighting: Sighting,
+    poses: tuple[Estimate, ...],
+    placed: Placement,
+    drift_px: NDArray[np.float64],
 ) -> tuple[tuple[Estimate, ...], NDArray[np.float64], Sighting]:
     """Poses fitted with the errors that the markers turned out to have, the likeliest first, and
-    their weights; the sighting with those errors."""
+    their weights; the sighting with those errors.
+
+    What may draw a marker aside, by ``drift_px`` (n,), counts here and not in the evidence: that a
+    place is not sure makes a pose less sure, but no dock of what would be none with sure places.
+    """
     order = np.argsort(-placed.weights, kind="stable").tolist()
     poses, weights = tuple(poses[k] for k in order), placed.weights[order]
-    if (np.abs(placed.sigma_px / sighting.sigma_px - 1) <= SAME_ERROR).all():
+    sigma_px = np.hypot(placed.sigma_px, drift_px)
+    if (np.abs(sigma_px / sighting.sigma_px - 1) <= SAME_ERROR).all():
         return poses, weights, sighting
-    sighting = replace(sighting, sigma_px=placed.sigma_px)
+    sighting = replace(sighting, sigma_px=sigma_px)
     again = tuple(refined_pose(sighting, pose.R, pose.t) or pose for pose in poses)
     return again, weights, sighting
 

@@ -76,16 +76,18 @@ _NOISE_SLOPE = float(
 class Tops:
     """Where a lamp may be, the likeliest first.
 
-    ``xy`` (k, 2) pixels; ``sigma`` (k,): standard deviations in x as in y, pixels.
+    ``xy`` (k, 2) pixels; ``sigma`` (k,): standard deviations in x as in y, pixels, if it is a lamp
+    and round; ``drift`` (k,): those of what may draw it aside, see DRIFT.
     """
 
     xy: NDArray[np.float64]
     sigma: NDArray[np.float64]
+    drift: NDArray[np.float64]
 
-    def nearest(self, place: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
-        """The one nearest to ``place`` (2,), pixels: its own place and error."""
+    def nearest(self, place: NDArray[np.float64]) -> tuple[NDArray[np.float64], float, float]:
+        """The one nearest to ``place`` (2,), pixels: its own place, error and drift."""
         k = int(np.linalg.norm(self.xy - place, axis=1).argmin())
-        return self.xy[k], float(self.sigma[k])
+        return self.xy[k], float(self.sigma[k]), float(self.drift[k])
 
 
 def refined(
@@ -307,10 +309,10 @@ def _in_pixels(tops: list[_Top], corner: NDArray[np.intp], step: int, noise: flo
     for top in tops:
         sharp = (top.sharpness - _BLUNT) / (_SHARP - _BLUNT) if step == 1 else 0.0
         sampling = SAMPLING * min(max(sharp, _LEAST_SAMPLING), 1.0)
-        by_steps = math.hypot(FLOOR * top.width, noise * top.error, DRIFT * top.drift)
-        sigma.append(math.hypot(sampling, step * by_steps))
+        sigma.append(math.hypot(sampling, step * FLOOR * top.width, step * noise * top.error))
     at = np.array([top.at for top in tops])
-    return Tops(corner + (at + 0.5) * step - 0.5, np.array(sigma))
+    drift = step * DRIFT * np.array([top.drift for top in tops])
+    return Tops(corner + (at + 0.5) * step - 0.5, np.array(sigma), drift)
 
 
 def _climbed(

@@ -56,6 +56,11 @@ static size_t frame_message(uint8_t *wire, uint32_t id, const uint8_t *payload,
     return 12u + length + (is_signed ? 13 : 0);
 }
 
+static bool is_start(uint8_t byte)
+{
+    return byte == MAVLINK_STX || byte == MAVLINK_STX_MAVLINK1;
+}
+
 void message(void)
 {
     _Alignas(8) uint8_t payload[255 + sizeof(uint64_t)] = {0};
@@ -80,13 +85,13 @@ void message(void)
     const bool inert = manner % 8 >= MANNER_BAD_CHECKSUM && manner % 8 != 7;
     /* What is in a message that is no message may be one: not in these. */
     for (size_t i = 0; inert && i < sizeof payload; i++)
-        if (payload[i] == MAVLINK_STX)
-            payload[i]--;
+        if (is_start(payload[i]))
+            payload[i] = 0;
     uint8_t length = entry->max_msg_len;
     while ((manner & MANNER_UNCUT) == 0 && length > 1 &&
            payload[length - 1] == 0)
         length--;
-    if (inert && length == MAVLINK_STX)
+    while (inert && is_start(length))
         length--;
 
     const bool alone = inert || (manner & MANNER_ALONE) != 0;

@@ -124,6 +124,7 @@ def entries() -> dict[str, bytes]:
             message(SET, manner | PLAUSIBLE, b"\0\0\x20\x41\0\0\x12")
             + message(COMMAND, manner | PLAUSIBLE, b"\2\xff\1\1" + bytes(24))
             + message(HANDSHAKE, manner | PLAUSIBLE, b"\1\3\3\0")
+            + message(SET, manner, list_1)
             for manner in (BAD_CHECKSUM, TO_ANOTHER, FROM_THE_DOCK)
         ),
         "leds": frame(0, 0, 0, 200) + raw(host.command(led, 2, 255, 0, 9)) + send()

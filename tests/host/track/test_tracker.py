@@ -266,8 +266,8 @@ def test_the_track_can_be_asked_for_any_later_time(run: Run) -> None:
 @pytest.mark.parametrize("shift", [(0.0, -2.0, 0.0), (0.0, 0.0, -1.0), (-2.0, 0.5, 1.0)])
 def test_it_does_not_matter_where_the_dock_has_its_origin(shift: tuple[float, ...]) -> None:
     """The same pixels: at each moment the same dock, its covariance carried to the origin.  Only
-    when a pose is first told may differ, for how surely the place is known is asked of another
-    point of the dock."""
+    whether a pose is told may differ, for how surely the place is known is asked of another point
+    of the dock."""
     origin = np.array(shift)
     moved = DockGeometry(DOCK.names, DOCK.points - origin)
     trackers = Tracker(DOCK), Tracker(moved)

@@ -284,10 +284,13 @@ def _tops(patch: _Patch) -> list[_Top]:
 def _drift(best: _Top, by_width: list[_Top]) -> float:
     """Steps from a top to that at the next width, narrower or wider: the shorter of both ways, for
     a narrow smoothing is led astray by noise, and one wider than the lamp by what is beside it.  0
-    where there is no other."""
-    octaves = [abs(math.log2(top.width / best.width)) for top in by_width]
-    beside = [top for top, off in zip(by_width, octaves, strict=True) if 0 < off < 0.75]
-    return min((math.dist(best.at, top.at) for top in beside), default=0.0)
+    where no wider one has a top: then the lamp may be as wide as the widest, and a narrower one
+    finds any place on it."""
+    octaves = {top: math.log2(top.width / best.width) for top in by_width}
+    beside = [top for top, off in octaves.items() if 0 < abs(off) < 0.75]
+    if not any(octaves[top] > 0 for top in beside):
+        return 0.0
+    return min(math.dist(best.at, top.at) for top in beside)
 
 
 def _others(patch: _Patch) -> Iterator[_Top]:

@@ -1,10 +1,10 @@
 """Lens models: from rays to places in the picture and back, each with its derivatives.
 
-The one place that knows them; ``CameraModel.optics`` is the lens of a camera.  ``plumb_bob`` and
-``rational_polynomial`` are one formula of OpenCV's with more or fewer coefficients, about a
-pinhole.  ``equidistant`` is that of ``cv2.fisheye`` (Kannala and Brandt, PAMI 28 (2006) 1335),
-written here since OpenCV's own takes what is behind the camera for what is in front of it: the
-angle to the optical axis is theta, and
+With ``host/native/lens.c``, which has the formulas, the one place that knows them;
+``CameraModel.optics`` is the lens of a camera.  ``plumb_bob`` and ``rational_polynomial`` are one
+formula of OpenCV's with more or fewer coefficients, about a pinhole.  ``equidistant`` is that of
+``cv2.fisheye`` (Kannala and Brandt, PAMI 28 (2006) 1335), but for what is behind the camera, which
+OpenCV's own takes for what is in front of it: the angle to the optical axis is theta, and
 
     theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
 
@@ -17,13 +17,17 @@ lengths: the tangent of the angle to the axis for a pinhole, the angle itself, r
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from chromadock._native import ffi, lib
+from chromadock.geometry.native import doubles
 
 Real = NDArray[np.float64]
 
@@ -37,17 +41,12 @@ COUNTS: dict[str, tuple[int, ...]] = {
 PINHOLE_COUNTS = (0, 4, 5, 8, 12, 14)
 """Those that OpenCV's pinhole formula takes."""
 
-_ZERO = np.zeros(3)
-_PLACE_AND_TURN = np.array([3, 4, 5, 0, 1, 2])  # columns of OpenCV's derivatives
-_LEAST_DEPTH_M = 1e-3  # of a point that has to have some place in a flat picture
-# OpenCV's own default stops after five rounds, which leaves almost a pixel of error at
-# the corners of a wide lens.
-_CONVERGED = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 100, 1e-10)
+_UNTILTED = 12  # coefficients before the two angles of a tilted sensor
 _STEPS = 2048  # of the table that an inversion starts from
 _NEWTON_ROUNDS = 4  # from there to the last bit
 _ALL_AROUND = np.pi - 1e-6  # straight behind has no direction in the picture
 _ON_AXIS = 1e-12
-_NEARLY = 0.99  # of the way to a fold: there OpenCV's iterations no longer converge
+_NEARLY = 0.99  # of the way to a fold: beyond it a pixel hardly tells where it comes from
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,21 +62,18 @@ class Lens(Protocol):
     """What a camera needs of its lens.  Points are metres in the camera frame."""
 
     @property
+    def native(self) -> Any:
+        """As C has it."""
+
+    @property
     def fold(self) -> Fold | None:
         """Where the formula turns back; None where it never does."""
 
     def sees(self, points: Real) -> NDArray[np.bool_]:
         """(..., 3) points to (...): whether each has a place in the picture, however large."""
 
-    def within_reach(self, points: Real) -> Real:
-        """(..., 3) points, changed as little as gives each a place in the picture."""
-
     def project(self, points: Real) -> tuple[Real, Real]:
         """(N, 3) points that it sees to (N, 2) pixels, and their (N, 2, 3) derivatives."""
-
-    def project_turned(self, arms: Real, t: Real) -> tuple[Real, Real]:
-        """Points at (N, 3) ``arms`` from ``t`` (3,) that it sees, and their (N, 2, 6) derivatives:
-        by ``t``, then by turns of the arms about the camera's axes, radians."""
 
     def rays(self, pixels: Real) -> Real:
         """(N, 2) pixels to (N, 3) unit rays; NaN where no ray comes to a pixel."""
@@ -100,14 +96,60 @@ class Lens(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class PinholeLens:
+class _NativeLens(ABC):
+    """What C computes of a lens: ``matrix`` (3, 3), ``coefficients`` (n,)."""
+
+    matrix: Real
+    coefficients: Real
+
+    @cached_property
+    @abstractmethod
+    def native(self) -> Any:
+        """See ``Lens``."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """C's memory stays where it is."""
+        return type(self), (self.matrix, self.coefficients)
+
+    def _native(self, kind: int, coefficients: Real, tilt: Real, widest: float) -> Any:
+        """``lens_t`` of ``host/native/lens.h``."""
+        focal, centre = self.matrix[[0, 1], [0, 1]], self.matrix[:2, 2]
+        lists = [array.tolist() for array in (focal, centre, coefficients, tilt.ravel())]
+        return ffi.new("lens_t *", (kind, *lists, widest))
+
+    def sees(self, points: Real) -> NDArray[np.bool_]:
+        """See ``Lens``."""
+        seen = np.empty(points.shape[:-1], np.bool_)
+        lib.lens_sees(self.native, seen.size, doubles(points), ffi.from_buffer("uint8_t[]", seen))
+        return seen
+
+    def project(self, points: Real) -> tuple[Real, Real]:
+        """See ``Lens``."""
+        pixels, derivatives = np.empty((len(points), 2)), np.empty((len(points), 2, 3))
+        arrays = map(doubles, (points, pixels, derivatives))
+        lib.lens_project(self.native, len(points), *arrays)
+        return pixels, derivatives
+
+    def depth(self, points: Real) -> Real:
+        """See ``Lens``."""
+        depth = np.empty(points.shape[:-1])
+        lib.lens_depth(self.native, depth.size, doubles(points), doubles(depth))
+        return depth
+
+
+@dataclass(frozen=True, eq=False)
+class PinholeLens(_NativeLens):
     """OpenCV's formula: ``matrix`` (3, 3), ``coefficients`` (n,): k1 k2 p1 p2 [k3 [k4 k5 k6 ...]].
 
     Angles are below 90 degrees.
     """
 
-    matrix: Real
-    coefficients: Real
+    @cached_property
+    def native(self) -> Any:
+        """See ``Lens``."""
+        widest = np.inf if self.fold is None else float(np.tan(self.fold.angle_rad))
+        tilt = _tilt(*self.coefficients[_UNTILTED:])
+        return self._native(lib.LENS_PINHOLE, self.coefficients[:_UNTILTED], tilt, widest)
 
     @cached_property
     def fold(self) -> Fold | None:
@@ -122,34 +164,6 @@ class PinholeLens:
             return None
         r = np.sqrt(turn)
         return Fold(float(np.arctan(r)), float(r * N(turn) / D(turn)))
-
-    def sees(self, points: Real) -> NDArray[np.bool_]:
-        """See ``Lens``."""
-        in_front = points[..., 2] > 0
-        if self.fold is None:
-            return np.asarray(in_front)
-        across = np.hypot(points[..., 0], points[..., 1])
-        return np.asarray(in_front & (across < np.tan(self.fold.angle_rad) * points[..., 2]))
-
-    def within_reach(self, points: Real) -> Real:
-        """See ``Lens``."""
-        near = np.array(points)
-        np.maximum(near[..., 2], _LEAST_DEPTH_M, out=near[..., 2])
-        return near
-
-    def project(self, points: Real) -> tuple[Real, Real]:
-        """See ``Lens``."""
-        pixels, derivatives = cv2.projectPoints(
-            points, _ZERO, _ZERO, self.matrix, self.coefficients
-        )
-        by_place = np.asarray(derivatives[:, 3:6], np.float64).reshape(-1, 2, 3)
-        return np.asarray(pixels, np.float64).reshape(-1, 2), by_place
-
-    def project_turned(self, arms: Real, t: Real) -> tuple[Real, Real]:
-        """See ``Lens``: from a rotation of zero OpenCV's derivatives by it are by such turns."""
-        pixels, derivatives = cv2.projectPoints(arms, _ZERO, t, self.matrix, self.coefficients)
-        by_place_and_turn = np.asarray(derivatives, np.float64).take(_PLACE_AND_TURN, axis=1)
-        return np.asarray(pixels, np.float64).reshape(-1, 2), by_place_and_turn.reshape(-1, 2, 6)
 
     def rays(self, pixels: Real) -> Real:
         """See ``Lens``."""
@@ -173,16 +187,9 @@ class PinholeLens:
         return np.asarray(np.hypot(*off.T) / (_NEARLY * self.fold.reach))
 
     def _inverted(self, pixels: Real) -> Real:
-        given = np.asarray(pixels, np.float64).reshape(-1, 1, 2)
-        if not len(given):
-            return np.empty((0, 2))
-        if hasattr(cv2, "undistortPointsIter"):  # OpenCV 4; in 5 it became an argument
-            places = cv2.undistortPointsIter(
-                given, self.matrix, self.coefficients, None, None, _CONVERGED
-            )
-        else:
-            places = cv2.undistortPoints(given, self.matrix, self.coefficients, criteria=_CONVERGED)
-        return np.asarray(places, np.float64).reshape(-1, 2)
+        ideal = np.empty((len(pixels), 2))
+        lib.lens_straighten(self.native, len(pixels), doubles(pixels), doubles(ideal))
+        return ideal
 
     def ideal_of(self, points: Real) -> Real:
         """See ``Lens``."""
@@ -193,31 +200,28 @@ class PinholeLens:
         rays = np.column_stack([ideal, np.ones(len(ideal))])
         return np.asarray(rays / np.linalg.norm(rays, axis=1, keepdims=True))
 
-    def depth(self, points: Real) -> Real:
-        """See ``Lens``: the distance along the axis."""
-        return np.asarray(points[..., 2])
-
     def log_volume(self, points: Real) -> Real:
         """See ``Lens``: z^3, for dx dy dz = z^2 du dv dz, and dz = z dlog z."""
         return np.asarray(3 * np.log(points[..., 2]))
 
 
 @dataclass(frozen=True, eq=False)
-class EquidistantLens:
+class EquidistantLens(_NativeLens):
     """``matrix`` (3, 3), ``coefficients`` (4,) k1 k2 k3 k4 or none; angles of up to 180 degrees."""
 
-    matrix: Real
-    coefficients: Real
+    @cached_property
+    def native(self) -> Any:
+        """See ``Lens``."""
+        return self._native(lib.LENS_EQUIDISTANT, self.coefficients, _tilt(), self._most)
 
     @cached_property
-    def _series(self) -> tuple[float, float, float, float]:
-        k1, k2, k3, k4 = self.coefficients.tolist() if self.coefficients.size else (0.0,) * 4
-        return k1, k2, k3, k4
+    def _series(self) -> Real:
+        return self.coefficients if self.coefficients.size else np.zeros(4)
 
     @cached_property
     def fold(self) -> Fold | None:
         """Where theta_d, whose derivative is a polynomial in theta^2, turns back."""
-        k1, k2, k3, k4 = self._series
+        k1, k2, k3, k4 = self._series.tolist()
         turn = _least_root(np.polynomial.Polynomial([1, 3 * k1, 5 * k2, 7 * k3, 9 * k4]))
         angle = float(np.sqrt(turn))
         return Fold(angle, float(self._bent(np.array(angle))[0])) if angle < _ALL_AROUND else None
@@ -234,9 +238,9 @@ class EquidistantLens:
 
     def _bent(self, angle: Real) -> tuple[Real, Real]:
         """theta_d of theta, and its derivative."""
-        (k1, k2, k3, k4), u = self._series, angle * angle
-        bent = angle * (1 + u * (k1 + u * (k2 + u * (k3 + u * k4))))
-        return bent, 1 + u * (3 * k1 + u * (5 * k2 + u * (7 * k3 + u * 9 * k4)))
+        bent, slope = np.empty_like(angle), np.empty_like(angle)
+        lib.lens_bend(doubles(self._series), angle.size, *map(doubles, (angle, bent, slope)))
+        return bent, slope
 
     def _straightened(self, bent: Real) -> Real:
         """The theta of a theta_d >= 0; beyond the fold both go on in step."""
@@ -248,41 +252,6 @@ class EquidistantLens:
             angle = angle - (value - bent) / np.maximum(slope, 1e-9)
             angle = np.clip(angle, angles[cell], angles[cell + 1])
         return np.asarray(np.where(bent > places[-1], angles[-1] + bent - places[-1], angle))
-
-    def sees(self, points: Real) -> NDArray[np.bool_]:
-        """See ``Lens``."""
-        return np.asarray(_off_axis(points)[1] < self._most)
-
-    def within_reach(self, points: Real) -> Real:
-        """See ``Lens``: the formula has a place for every direction."""
-        return points
-
-    def project(self, points: Real) -> tuple[Real, Real]:
-        """See ``Lens``."""
-        x, y, z = points.T
-        across, angle = _off_axis(points)
-        bent, slope = self._bent(angle)
-        square = np.maximum(across**2 + z**2, _ON_AXIS**2)
-        on_axis = across < _ON_AXIS * np.sqrt(square)
-        safe = np.where(on_axis, 1.0, across)
-        c, s = np.where(on_axis, 1.0, x / safe), np.where(on_axis, 0.0, y / safe)
-        # Across the line to the principal point, and along it.
-        around = np.where(on_axis, 1 / np.sqrt(square), bent / safe)
-        along = slope * z / square
-        place = np.stack([bent * c, bent * s], axis=1)
-        derivatives = np.empty((len(points), 2, 3))
-        derivatives[:, 0, 0] = along * c * c + around * s * s
-        derivatives[:, 1, 1] = along * s * s + around * c * c
-        derivatives[:, 0, 1] = derivatives[:, 1, 0] = (along - around) * c * s
-        derivatives[:, 0, 2], derivatives[:, 1, 2] = -slope * x / square, -slope * y / square
-        focal, centre = self.matrix[[0, 1], [0, 1]], self.matrix[:2, 2]
-        return place * focal + centre, derivatives * focal[:, None]
-
-    def project_turned(self, arms: Real, t: Real) -> tuple[Real, Real]:
-        """See ``Lens``."""
-        pixels, by_place = self.project(arms + t)
-        by_turn = np.cross(arms[:, None], by_place)
-        return pixels, np.concatenate([by_place, by_turn], axis=2)
 
     def rays(self, pixels: Real) -> Real:
         """See ``Lens``."""
@@ -310,10 +279,6 @@ class EquidistantLens:
         # numpy's sinc is of a turn's half: sin(pi x) / (pi x).
         return np.column_stack([ideal * np.sinc(angle / np.pi)[:, None], np.cos(angle)])
 
-    def depth(self, points: Real) -> Real:
-        """See ``Lens``: the distance."""
-        return np.asarray(np.linalg.norm(points, axis=-1))
-
     def log_volume(self, points: Real) -> Real:
         """See ``Lens``: r^3 sin(theta) / theta, the solid angle being
         sin(theta) dtheta dphi and the square focal length theta dtheta dphi."""
@@ -325,6 +290,15 @@ def lens_of(name: str, matrix: Real, coefficients: Real) -> Lens:
     """The lens of one of the names in COUNTS."""
     kind = EquidistantLens if name == "equidistant" else PinholeLens
     return kind(matrix, coefficients)
+
+
+def _tilt(across: float = 0.0, down: float = 0.0) -> Real:
+    """(3, 3): what OpenCV has a sensor do to places (x, y, 1) that is turned by angles, radians,
+    about the picture's axis to the right and that downwards."""
+    a, b = cv2.Rodrigues(np.array([-across, 0, 0]))[0], cv2.Rodrigues(np.array([0, -down, 0]))[0]
+    R = b @ a
+    onto = np.array([[R[2, 2], 0, -R[0, 2]], [0, R[2, 2], -R[1, 2]], [0, 0, 1]])
+    return np.asarray(onto @ R)
 
 
 def _off_axis(points: Real) -> tuple[Real, Real]:

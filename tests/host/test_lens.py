@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import cv2
 import numpy as np
 import pytest
@@ -35,6 +37,26 @@ def test_an_equidistant_lens_projects_as_opencvs_fisheye() -> None:
     points, zero = directions(85)[4:], np.zeros(3)
     theirs, _ = cv2.fisheye.projectPoints(points[:, None], zero, zero, MATRIX, np.array(BENT))
     np.testing.assert_allclose(FISHEYE.project(points), theirs[:, 0], atol=1e-9)
+
+
+@pytest.mark.parametrize("count", [4, 5, 8, 12, 14])
+def test_a_pinhole_projects_as_opencv(count: int) -> None:
+    """Thin prisms and tilted sensors too; its derivatives by a place are the same."""
+    bent = np.array([0.6, 0.05, 1e-3, 2e-3, 1e-3, 0.75, 0.12, 5e-3, 2e-3, -1e-3, 3e-3, 1e-3])
+    bent = np.append(bent, [0.03, -0.05])[:count]
+    camera = CameraModel(640, 480, MATRIX, bent)
+    points, zero = directions(40), np.zeros(3)
+    theirs, by = cv2.projectPoints(points, zero, zero, MATRIX, bent)
+    pixels, derivatives = camera.optics.project(points)
+    np.testing.assert_allclose(pixels, theirs[:, 0], atol=1e-9)
+    np.testing.assert_allclose(derivatives, by[:, 3:6].reshape(-1, 2, 3), rtol=1e-9, atol=1e-6)
+
+
+def test_a_lens_is_copied_without_cs_memory() -> None:
+    for camera in CAMERAS.values():
+        before, after = camera.optics, pickle.loads(pickle.dumps(camera)).optics
+        assert after.native != before.native
+        assert after.project(directions(40))[0] == pytest.approx(before.project(directions(40))[0])
 
 
 def test_an_equidistant_lens_sees_to_the_side_and_behind() -> None:

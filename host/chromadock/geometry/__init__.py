@@ -1,5 +1,5 @@
 """From markers in the picture to poses of the dock, and how sure these are.
 
-``pose`` solves for them, ``profile`` widens their covariance where the errors are not small,
-``symmetry`` tells which docks look alike when turned.
+``starts`` guesses them, ``pose`` fits them, ``profile`` widens their covariance where the errors
+are not small, ``symmetry`` tells which docks look alike when turned.
 """

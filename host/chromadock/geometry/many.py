@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock._native import lib
+from chromadock._native import ffi, lib
 from chromadock.geometry.native import doubles
 from chromadock.geometry.pose import Sighting
 
@@ -29,16 +31,30 @@ def rotation_vectors(R: Real) -> Real:
     return np.asarray(axis * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 0.5)[:, None])
 
 
-def errors(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real]:
-    """Reprojection errors (M, 2N) of M poses in standard deviations, and their derivatives
-    (M, 2N, 6) by x, y, z and by turns about the camera's axes, as in ``geometry.pose``."""
-    count, optics = len(R), sighting.camera.optics
-    arms = np.einsum("mij,nj->mni", R, sighting.points_dock)
-    # No marker is projected from where the lens does not see.
-    seen = optics.within_reach(arms + t[:, None])
-    pixels, derivatives = optics.project(seen.reshape(-1, 3))
-    markers = len(sighting.sigma_px)
-    error, jacobian = np.empty((count, 2 * markers)), np.empty((count, 2 * markers, 6))
-    given = (arms, pixels, derivatives, sighting.pixels, sighting.sigma_px)
-    lib.poses_errors(count, markers, *map(doubles, (*given, error, jacobian)))
-    return error, jacobian
+class Normal(NamedTuple):
+    """The normal equations of M poses: e are reprojection errors in standard deviations, J their
+    derivatives by x, y, z and by turns about the camera's axes, as in ``geometry.pose``.
+
+    ``information`` (M, 6, 6): J'J; ``gradient`` (M, 6): J'e; ``chi_square`` (M,): e'e; ``seen``
+    (M,): whether the lens sees all markers.  Of a marker that it does not see the error is that
+    of a place somewhere.
+    """
+
+    information: Real
+    gradient: Real
+    chi_square: Real
+    seen: NDArray[np.bool_]
+
+
+def normal_equations(sighting: Sighting, R: Real, t: Real, sigma_px: Real | None = None) -> Normal:
+    """Those of poses (M, 3, 3), (M, 3), with standard deviations (M, N) in place of the
+    sighting's, if there are."""
+    count = len(R)
+    sigma_px = sighting.sigma_px if sigma_px is None else sigma_px
+    given = (R, t, np.broadcast_to(sigma_px, (count, len(sighting.pixels))))
+    normal = Normal(
+        np.empty((count, 6, 6)), np.empty((count, 6)), np.empty(count), np.empty(count, np.bool_)
+    )
+    arrays = map(doubles, (*given, *normal[:3]))
+    lib.poses_normal(sighting.native, count, *arrays, ffi.from_buffer("uint8_t[]", normal.seen))
+    return normal

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.many import errors, rotation_vectors, rotations
+from chromadock.geometry.many import normal_equations, rotation_vectors, rotations
 from chromadock.geometry.pose import Estimate, Sighting
 
 _WELL_KNOWN_RAD = 0.015
@@ -72,17 +72,14 @@ def _profile(
     most = _RAN_AWAY * float(np.trace(estimate.information))
     lost = np.zeros(len(angles), bool)
     for _ in range(_ROUNDS):
-        error, jacobian = errors(sighting, R, t)
-        normal = jacobian.transpose(0, 2, 1) @ jacobian
-        gradient = jacobian.transpose(0, 2, 1) @ error[..., None]
-        lost |= ~(np.trace(normal, axis1=1, axis2=2) < most)
-        normal[lost], gradient[lost] = np.eye(6), 0.0
-        trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
-        damped = normal + trace * (_STIFFNESS * held + _DAMPING * np.eye(6))
-        step = -np.linalg.solve(damped, gradient)[..., 0]
+        information, gradient, *_ = normal_equations(sighting, R, t)
+        lost |= ~(np.trace(information, axis1=1, axis2=2) < most)
+        information[lost], gradient[lost] = np.eye(6), 0.0
+        trace = np.trace(information, axis1=1, axis2=2)[:, None, None]
+        damped = information + trace * (_STIFFNESS * held + _DAMPING * np.eye(6))
+        step = -np.linalg.solve(damped, gradient[..., None])[..., 0]
         t = t + step[:, :3]
         R = rotations(step[:, 3:]) @ R
-    error, _ = errors(sighting, R, t)
     turned = rotation_vectors(R @ estimate.R.T)
-    chi_square = np.where(lost, np.inf, (error**2).sum(axis=1))
+    chi_square = np.where(lost, np.inf, normal_equations(sighting, R, t).chi_square)
     return np.column_stack([t - estimate.t, turned]), chi_square

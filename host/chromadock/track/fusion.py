@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock.geometry.many import normal_equations
 from chromadock.geometry.pose import Sighting
 from chromadock.track.motion import ATTITUDE, POSE, RATE, State, rotation, turn_between
 
@@ -16,8 +17,8 @@ Floats = NDArray[np.float64]
 _MAX_ROUNDS = 6
 # A step of less than a thirtieth of the error ends them.
 _CONVERGED = 1e-3
-# A pose that puts a marker so many standard deviations from where it was seen ran away.
-_RAN_AWAY = 1e5
+# Chi-square of a pose that ran away: its markers are 100,000 standard deviations off.
+_RAN_AWAY = 1e10
 # Of true measurements one in a thousand is gated out: 3.09 of a normal distribution.
 _GATED = 3.09
 
@@ -56,30 +57,30 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
     P = state.covariance
     prior = np.linalg.inv(P[POSE, POSE])
     for _ in range(_MAX_ROUNDS):
-        errors = _errors(seen, R, t)
-        if errors is None:
+        normal = _normal(seen, R, t)
+        if normal is None:
             return None
-        error, jacobian = errors
+        told, gradient, _ = normal
         off = np.concatenate([t - state.t, turn_between(state.R, R)])
-        information = jacobian.T @ jacobian + prior
-        step = -np.linalg.solve(information, jacobian.T @ error + prior @ off)
+        information = told + prior
+        step = -np.linalg.solve(information, gradient + prior @ off)
         R, t = rotation(step[3:]) @ R, t + step[:3]
         if step @ information @ step < _CONVERGED:
             break
-    errors = _errors(seen, R, t)
-    if errors is None:
+    normal = _normal(seen, R, t)
+    if normal is None:
         return None
-    error, jacobian = errors
+    told, _, misfit = normal
     off = np.concatenate([t - state.t, turn_between(state.R, R)])
-    information = jacobian.T @ jacobian + prior
+    information = told + prior
     # What the pose tells of the rest.
     gain = P[:, POSE] @ prior
     left = np.linalg.inv(information) - P[POSE, POSE]
-    chi_square = float(error @ error + off @ prior @ off)
+    chi_square = float(misfit + off @ prior @ off)
     gained = np.linalg.slogdet(information)[1] - np.linalg.slogdet(prior)[1]
     return Fused(
         state.corrected(gain @ off, P + gain @ left @ gain.T),
-        len(error),
+        seen.pixels.size,
         chi_square,
         -0.5 * chi_square - 0.5 * float(gained),
     )
@@ -96,10 +97,12 @@ def with_turn_rate(state: State, turn_rate: Floats, variance: float) -> Fused:
     return _fused(state, RATE, turn_rate - state.turn_rate, variance * np.eye(3))
 
 
-def _errors(seen: Sighting, R: Floats, t: Floats) -> tuple[Floats, Floats] | None:
-    """The same as ``seen.errors``; None also of a pose that ran away."""
-    errors = seen.errors(R, t)
-    return errors if errors is not None and np.abs(errors[0]).max() < _RAN_AWAY else None
+def _normal(seen: Sighting, R: Floats, t: Floats) -> tuple[Floats, Floats, float] | None:
+    """Information, gradient and chi-square of one pose, as of ``many.Normal``; None where a marker
+    is out of view, or nowhere near."""
+    information, gradient, chi_square, whole = normal_equations(seen, R[None], t[None])
+    near = whole[0] and chi_square[0] < _RAN_AWAY
+    return (information[0], gradient[0], float(chi_square[0])) if near else None
 
 
 def _fused(state: State, part: slice, off: Floats, covariance: Floats) -> Fused:

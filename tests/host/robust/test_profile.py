@@ -10,7 +10,7 @@ import pytest
 
 from chromadock import CameraModel, DockGeometry
 from chromadock.geometry import profile
-from chromadock.geometry.many import errors
+from chromadock.geometry.many import Normal, normal_equations
 from chromadock.geometry.pose import Estimate, Sighting, estimates
 from chromadock.geometry.profile import widened
 
@@ -76,16 +76,16 @@ def test_a_refit_that_runs_into_the_lens_does_not_count(monkeypatch: pytest.Monk
     sighting, *_ = view(4.0, np.random.default_rng(3))
     pose, calls = estimates(sighting)[0], 0
 
-    def run_away(*poses: Any) -> tuple[np.ndarray, np.ndarray]:
+    def run_away(*poses: Any) -> Normal:
         nonlocal calls
-        error, jacobian = errors(*poses)
+        normal = normal_equations(*poses)
         calls += 1
         if calls > 1:
-            jacobian[0] = 0.0
-            jacobian[0, 0, :3] = 1e14
-        return error, jacobian
+            normal.information[0] = 0.0
+            normal.information[0, :3, :3] = 1e28
+        return normal
 
-    monkeypatch.setattr(profile, "errors", run_away)
+    monkeypatch.setattr(profile, "normal_equations", run_away)
     axes, angles = np.eye(3)[:2], np.array([0.2, 0.2])
     _, chi_square = profile._profile(sighting, pose, axes, angles)
     assert np.isinf(chi_square).tolist() == [True, False]

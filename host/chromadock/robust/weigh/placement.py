@@ -17,7 +17,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.pose import Estimate, Sighting, projected
+from chromadock.geometry.many import normal_equations
+from chromadock.geometry.pose import Estimate, Sighting
 from chromadock.lens import Lens
 
 Real = NDArray[np.float64]
@@ -92,15 +93,13 @@ def placement(sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior)
 
 def _of_pose(sighting: Sighting, pose: Estimate, prior: PosePrior, variances: Real) -> Real:
     """(M,) log density of the places about one pose, for (M, N) variances of theirs."""
-    seen = projected(sighting.points_dock, pose.R, pose.t, sighting.camera)
-    optics = sighting.camera.optics
-    if seen is None or not optics.sees(pose.t):
-        return np.full(len(variances), -np.inf)
-    pixels, jacobian = seen
-    square = ((pixels - sighting.pixels) ** 2).sum(axis=1)
-    known = np.einsum("nki,nkj,mn->mij", jacobian, jacobian, 1 / variances)
+    count, optics = len(variances), sighting.camera.optics
+    R, t = np.broadcast_to(pose.R, (count, 3, 3)), np.broadcast_to(pose.t, (count, 3))
+    known, _, chi_square, seen = normal_equations(sighting, R, t, np.sqrt(variances))
+    if not (seen[0] and optics.sees(pose.t)):
+        return np.full(count, -np.inf)
     known[:, 3:, 3:] += prior.R_information
     known[:, :3, :3] += np.eye(3) / float(optics.depth(pose.t)) ** 2
-    fit = -0.5 * (square / variances).sum(axis=1) - np.log(2 * np.pi * variances).sum(axis=1)
+    fit = -0.5 * chi_square - np.log(2 * np.pi * variances).sum(axis=1)
     volume = 3 * np.log(2 * np.pi) - 0.5 * np.linalg.slogdet(known)[1]
     return np.asarray(fit + volume + prior.log_density(pose.R, pose.t, optics))

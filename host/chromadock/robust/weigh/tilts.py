@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.many import errors, rotation_vectors, rotations
+from chromadock.geometry.many import normal_equations, rotation_vectors, rotations
 from chromadock.geometry.pose import MIN_MARKERS, Estimate, Sighting
 from chromadock.robust.weigh.acceptance import share_beyond
 from chromadock.robust.weigh.placement import PosePrior
@@ -81,14 +81,15 @@ def _normal_equations(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real,
     """(M, 4, 4) and (M, 4, 1): information, and half the gradient of chi-square, by the place and
     by the turn about the dock's normal; (M,) chi-square.  A pose that ran away stays where it is,
     with an infinite chi-square."""
-    error, jacobian = errors(sighting, R, t)
-    about_normal = jacobian[:, :, 3:] @ R[:, :, 2:]
-    held = np.concatenate([jacobian[:, :, :3], about_normal], axis=2)
-    information = held.transpose(0, 2, 1) @ held
-    gradient = held.transpose(0, 2, 1) @ error[..., None]
+    normal = normal_equations(sighting, R, t)
+    # What the six coordinates of a pose do by those four.
+    by = np.zeros((len(R), 6, 4))
+    by[:, :3, :3], by[:, 3:, 3] = np.eye(3), R[:, :, 2]
+    information = by.transpose(0, 2, 1) @ normal.information @ by
+    gradient = by.transpose(0, 2, 1) @ normal.gradient[..., None]
     ran_away = ~(np.isfinite(information).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=(1, 2)))
     information[ran_away], gradient[ran_away] = np.eye(4), 0.0
-    chi_square = np.where(ran_away, np.inf, (error**2).sum(axis=1))
+    chi_square = np.where(ran_away, np.inf, normal.chi_square)
     trace = np.trace(information, axis1=1, axis2=2)[:, None, None]
     return information + _DAMPING * trace * np.eye(4), gradient, chi_square
 

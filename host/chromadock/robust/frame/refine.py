@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from chromadock._native import ffi, lib
+from chromadock.geometry.native import doubles
 from chromadock.robust.frame.layout import FINE_CELL
 from chromadock.robust.frame.overexposure import CLIPPED, clipped_at
 from chromadock.robust.frame.response import filtered, linear
@@ -36,34 +37,13 @@ hardly bends, and so no longer pulls the tops of close markers together (0.2 pix
 CUT_OFF = 1.5
 """Smoothing reaches so many of its own widths: what is beyond changes no place that matters."""
 SHIFT_PER_SPACING = 1 / 3
-MAX_SHIFT = 6.0
-"""A lamp's top is looked for within this of where it was supposed: steps; half the diagonal of the
-plateau of a lamp that fills 2 x 2 cells."""
+MAX_SHIFT: int = lib.TOPS_FARTHEST
+"""A lamp's top is looked for within this of where it was supposed: steps."""
 
-SAMPLING = 0.17
-"""Standard error in pixels that a sensor's colour mosaic leaves the sharpest lamp: of red and of
-blue light it sees every fourth pixel."""
-FLOOR = 0.03
-"""Standard error left to the brightest lamp, by the smoothing's width: what stands behind it
-is not flat, and shifts the top."""
 INFLATION = 1.4
 """True errors are so much larger than independent noise makes them: water's and JPEG's is not."""
-# Bend over height of a top at the least width, in steps: of a lamp that falls between the
-# mosaic's samples, and of one spread over several; the share of SAMPLING that is left then.
-_SHARP, _BLUNT, _LEAST_SAMPLING = 0.37, 0.1, 0.4
 
-DRIFT = 1.0
-"""Standard error of a place, in its top's way from one smoothing to the next one half an octave
-narrower or wider, whichever is shorter.  The top of a round lamp stays where it is; that of the
-corner of two bright bars, or of a lamp that a bar draws aside, goes on with each width, and is off
-by two or three such steps."""
-
-MAX_TOPS = 3
-"""Places that a lamp is supposed in at most."""
-OTHER = 0.35
-"""Height of another top near a small lamp, of the highest's, that may be the lamp: a glint beside
-it or the edge of a strut may be the brighter one.  Which of them it is the whole dock tells."""
-_SMALL = 2  # widths at most that fit between the markers: then a top is a lamp, not a speck of one
+_WIDTHS = doubles(np.array(WIDTHS))
 
 # Standard deviation of the slope of white noise so smoothed, for a width of 1: two Gaussians of
 # widths a and b have slopes of the covariance 1 / (2 pi (a^2 + b^2)^2).
@@ -77,7 +57,7 @@ class Tops:
     """Where a lamp may be, the likeliest first.
 
     ``xy`` (k, 2) pixels; ``sigma`` (k,): standard deviations in x as in y, pixels, if it is a lamp
-    and round; ``drift`` (k,): those of what may draw it aside, see DRIFT.
+    and round; ``drift`` (k,): those of what may draw it aside.
     """
 
     xy: NDArray[np.float64]
@@ -117,23 +97,17 @@ def refined(
     n of them; None where one has no top, or none that says more than where it was supposed.
     """
     step = max(cell // FINE_CELL, 1)
-    patches: dict[int, _Patch] = {}
+    found: dict[int, Tops] = {}
     for lamps, spacing in _by_spacing(xy):
-        cut = _patches(frame_bgr, xy[lamps], step, weights, spacing / step)
-        patches.update(zip(lamps, cut, strict=True))
-    found = []
-    for lamp, spread in enumerate(noise.tolist()):
-        patch = patches[lamp]
-        tops = _tops(patch)
-        if not tops:
-            return None
+        patches = _patches(frame_bgr, xy[lamps], step, weights, spacing / step)
         # A cell is so many steps wide, and independent noise averages out by as much.
-        per_noise = INFLATION * cell / step * spread
-        places = _in_pixels(tops, patch.corner, step, per_noise)
-        if places.sigma[0] > MAX_SHIFT * step:
-            return None
-        found.append(places)
-    return found
+        slopes = _NOISE_SLOPE * INFLATION * cell * noise[lamps]
+        for lamp, patch, slope in zip(lamps, patches, slopes.tolist(), strict=True):
+            tops = _tops(patch, step, slope)
+            if tops is None or tops.sigma[0] > MAX_SHIFT * step:
+                return None
+            found[lamp] = tops
+    return [found[lamp] for lamp in range(len(xy))]
 
 
 def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
@@ -146,47 +120,16 @@ def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
     return [(which, min(room[k] for k in which)) for which in (crowded, others) if which]
 
 
-@dataclass(frozen=True, slots=True)
-class _Top:
-    """``at`` (x, y): steps in the patch; ``error``: standard, for noise of 1 a step; ``width``;
-    ``sharpness``: bend over height; ``drift``: steps, see DRIFT."""
-
-    at: tuple[float, float]
-    error: float
-    width: float
-    sharpness: float
-    drift: float = 0.0
-
-    @classmethod
-    def of(cls, smooth: NDArray[np.float32], x: int, y: int, width: float) -> _Top | None:
-        """Through 3 x 3 values of the light as smoothed; None where they have no top."""
-        # Nine numbers: Python's own arithmetic is the faster.
-        (_, up, _), (left, height, right), (_, down, _) = smooth[
-            y - 1 : y + 2, x - 1 : x + 2
-        ].tolist()
-        across, along = 2 * height - left - right, 2 * height - up - down
-        if min(across, along, height) <= 0:
-            return None
-        # A top moves by noise's slope over the bend.
-        error = _NOISE_SLOPE / (width**2 * min(across, along))
-        shift_x = min(max(0.5 * (right - left) / across, -1.0), 1.0)
-        shift_y = min(max(0.5 * (down - up) / along, -1.0), 1.0)
-        sharpness = 0.5 * (across + along) / height
-        return cls((x + shift_x, y + shift_y), error, width, sharpness)
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class _Patch:
-    """Filtered light about a lamp, smoothed; ``corner`` (2,): pixels, of its first step.
+    """Filtered light about a lamp; ``middle`` (2,): pixels, of its middle step.
 
-    ``layers``: a difference of Gaussians for each of ``widths``.  ``middle``: index of the
-    supposed place, both ways; ``reach``: steps from it that the lamp may be.
+    ``smoothed`` (k + 2, s, s) float32: by the first so many of WIDTHS, of which k are looked at.
+    ``reach``: steps from the middle that the lamp may be.
     """
 
-    corner: NDArray[np.intp]
-    layers: list[NDArray[np.float32]]
-    widths: list[float]
-    middle: int
+    middle: NDArray[np.float64]
+    smoothed: NDArray[np.float32]
     reach: float
 
 
@@ -216,13 +159,8 @@ def _patches(
     # threads for that, which wait for each other where other processes are busy.
     across = light.reshape(len(xy), 1, side, side) @ smoothers.transpose(0, 2, 1)
     smoothed = smoothers @ across
-    # The surround of a width is the smoothing of one two places on.
-    layers = smoothed[:, :-2] - smoothed[:, 2:]
-    corners += (around - middle) * step
-    return [
-        _Patch(corner, list(lamp), widths, middle, reach)
-        for corner, lamp in zip(corners, layers, strict=True)
-    ]
+    middles = corners + (around + 0.5) * step - 0.5
+    return [_Patch(at, lamp, reach) for at, lamp in zip(middles, smoothed, strict=True)]
 
 
 def _shining(pixels: NDArray[np.uint8], weights: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -257,77 +195,15 @@ def _smoothers(middle: int, around: int, count: int) -> NDArray[np.float32]:
     return np.asarray(weights / weights.sum(axis=2, keepdims=True), np.float32)
 
 
-def _tops(patch: _Patch) -> list[_Top]:
-    """Where the lamp may be: the best located top uphill of the middle, then others about."""
-    sharpness = 0.0
-    by_width: list[_Top] = []
-    for smooth, width in zip(patch.layers, patch.widths, strict=True):
-        summit = _climbed(smooth, patch.middle, max(1, round(width)), patch.reach)
-        top = None if summit is None else _Top.of(smooth, *summit, width)
-        if top is None:
-            continue
-        by_width.append(top)
-        if width == WIDTHS[0]:
-            sharpness = top.sharpness
-    if not by_width:
-        return []
-    best = min(by_width, key=lambda top: top.error)
-    tops = [replace(best, sharpness=sharpness, drift=_drift(best, by_width))]
-    if len(patch.widths) <= _SMALL:
-        for top in _others(patch):
-            far = [math.dist(top.at, other.at) > WIDTHS[0] for other in tops]
-            if all(far) and len(tops) < MAX_TOPS:
-                tops.append(top)
-    return tops
-
-
-def _drift(best: _Top, by_width: list[_Top]) -> float:
-    """Steps from a top to that at the next width, narrower or wider: the shorter of both ways, for
-    a narrow smoothing is led astray by noise, and one wider than the lamp by what is beside it.  0
-    where no wider one has a top: then the lamp may be as wide as the widest, and a narrower one
-    finds any place on it."""
-    octaves = {top: math.log2(top.width / best.width) for top in by_width}
-    beside = [top for top, off in octaves.items() if 0 < abs(off) < 0.75]
-    if not any(octaves[top] > 0 for top in beside):
-        return 0.0
-    return min(math.dist(best.at, top.at) for top in beside)
-
-
-def _others(patch: _Patch) -> Iterator[_Top]:
-    """All tops within reach at the least width, the highest first."""
-    smooth, width = patch.layers[0], patch.widths[0]
-    inside = slice(patch.middle - int(patch.reach), patch.middle + int(patch.reach) + 1)
-    window = smooth[inside, inside]
-    highest = cv2.dilate(smooth, np.ones((3, 3), np.uint8))[inside, inside]
-    rows, columns = np.nonzero((window >= highest) & (window > OTHER * window.max()))
-    for k in np.argsort(-window[rows, columns], kind="stable").tolist():
-        top = _Top.of(smooth, inside.start + int(columns[k]), inside.start + int(rows[k]), width)
-        if top is not None:
-            yield top
-
-
-def _in_pixels(tops: list[_Top], corner: NDArray[np.intp], step: int, noise: float) -> Tops:
-    """Tops of a patch, for light whose noise is ``noise`` a step."""
-    sigma = []
-    for top in tops:
-        sharp = (top.sharpness - _BLUNT) / (_SHARP - _BLUNT) if step == 1 else 0.0
-        sampling = SAMPLING * min(max(sharp, _LEAST_SAMPLING), 1.0)
-        sigma.append(math.hypot(sampling, step * FLOOR * top.width, step * noise * top.error))
-    at = np.array([top.at for top in tops])
-    drift = step * DRIFT * np.array([top.drift for top in tops])
-    return Tops(corner + (at + 0.5) * step - 0.5, np.array(sigma), drift)
-
-
-def _climbed(
-    smooth: NDArray[np.float32], start: int, stride: int, reach: float
-) -> tuple[int, int] | None:
-    """The top (x, y) uphill of the middle, or None where it is out of reach."""
-    x = y = start
-    while True:
-        window = smooth[y - stride : y + stride + 1, x - stride : x + stride + 1]
-        _, _, _, (dx, dy) = cv2.minMaxLoc(window)
-        if dx == stride and dy == stride:
-            return x, y
-        x, y = x + dx - stride, y + dy - stride
-        if max(abs(x - start), abs(y - start)) > reach:
-            return None
+def _tops(patch: _Patch, step: int, slope: float) -> Tops | None:
+    """Where the lamp may be, for light whose noise has so steep a slope, smoothed by 1 step; None
+    where there is no top."""
+    tops = np.empty((lib.TOPS_MOST, 4))
+    layers, side, _ = patch.smoothed.shape
+    smoothed = ffi.from_buffer("float[]", patch.smoothed)
+    given = (layers - 2, side, smoothed, _WIDTHS, patch.reach, step, slope)
+    count = lib.tops_find(ffi.new("tops_patch_t *", given), ffi.from_buffer("tops_top_t[]", tops))
+    if not count:
+        return None
+    x_y, sigma, drift = tops[:count, :2], tops[:count, 2], tops[:count, 3]
+    return Tops(patch.middle + step * x_y, sigma, drift)

@@ -98,15 +98,12 @@ def quaternion_from_matrix(R: ArrayLike) -> tuple[float, float, float, float]:
     """
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.asarray(R, dtype=np.float64).tolist()
     # 4 q q^T, from the definition of the matrix above.
-    outer = np.array(
-        [
-            [1 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
-            [zy - yz, 1 + xx - yy - zz, xy + yx, xz + zx],
-            [xz - zx, xy + yx, 1 - xx + yy - zz, yz + zy],
-            [yx - xy, xz + zx, yz + zy, 1 - xx - yy + zz],
-        ]
+    outer = (
+        (1 + xx + yy + zz, zy - yz, xz - zx, yx - xy),
+        (zy - yz, 1 + xx - yy - zz, xy + yx, xz + zx),
+        (xz - zx, xy + yx, 1 - xx + yy - zz, yz + zy),
+        (yx - xy, xz + zx, yz + zy, 1 - xx - yy + zz),
     )
-    q = outer[int(np.argmax(np.diag(outer)))]
-    q = q / np.linalg.norm(q) * (-1 if q[0] < 0 else 1)
-    w, x, y, z = q.tolist()
-    return w, x, y, z
+    w, x, y, z = max(enumerate(outer), key=lambda row: row[1][row[0]])[1]
+    length = math.hypot(w, x, y, z) * (-1 if w < 0 else 1)
+    return w / length, x / length, y / length, z / length

@@ -84,12 +84,14 @@ class Bank:
 
     def about(self, origin: Floats) -> Bank:
         """The same by a dock frame with its origin at ``origin`` (3,), metres, dock frame."""
-        return Bank(tuple(replace(h, state=h.state.about(origin)) for h in self.hypotheses))
+        return Bank(tuple(Hypothesis(h.state.about(origin), h.weight) for h in self.hypotheses))
 
     def after(self, elapsed_s: float, swift: float = 0.0) -> Bank:
         """The same ``elapsed_s`` >= 0 later, nothing seen meanwhile, of a vehicle that manoeuvres
         with probability ``swift``."""
-        moved = tuple(replace(h, state=h.state.after(elapsed_s, swift)) for h in self.hypotheses)
+        moved = tuple(
+            Hypothesis(h.state.after(elapsed_s, swift), h.weight) for h in self.hypotheses
+        )
         return replace(self, hypotheses=moved)
 
     def seen(self, sight: Sight) -> Bank | None:

@@ -101,7 +101,8 @@ class State:
         J = np.eye(12)
         J[POSE, POSE] = lever(arm)
         covariance = J @ self.covariance @ J.T
-        return replace(self, t=self.t + arm, covariance=(covariance + covariance.T) / 2)
+        symmetric = (covariance + covariance.T) / 2
+        return State(self.R, self.t + arm, self.velocity, self.turn_rate, symmetric)
 
     def after(self, elapsed_s: float, swift: float = 0.0) -> State:
         """The state ``elapsed_s`` >= 0 later, nothing seen meanwhile.

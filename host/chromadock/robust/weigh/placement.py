@@ -82,7 +82,8 @@ def placement(sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior)
     """Of markers that leave ``poses`` open, one or more."""
     extent = float(np.linalg.norm(np.ptp(sighting.pixels, axis=0)))
     variances = sighting.sigma_px**2 + (MISFITS[:, None] * extent) ** 2
-    logs = np.array([_of_pose(sighting, pose, prior, variances) for pose in poses]) + LOG_SHARES
+    logs = np.array([_of_pose(sighting, pose, prior, np.sqrt(variances)) for pose in poses])
+    logs += LOG_SHARES - np.log(2 * np.pi * variances).sum(axis=1)
     by_misfit = np.logaddexp.reduce(logs, axis=0)
     shares = np.exp(by_misfit - np.logaddexp.reduce(by_misfit))
     sigma_px = np.sqrt(shares @ variances)
@@ -91,15 +92,15 @@ def placement(sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior)
     return Placement(float(np.logaddexp.reduce(by_misfit)), sigma_px, weights)
 
 
-def _of_pose(sighting: Sighting, pose: Estimate, prior: PosePrior, variances: Real) -> Real:
-    """(M,) log density of the places about one pose, for (M, N) variances of theirs."""
-    count, optics = len(variances), sighting.camera.optics
+def _of_pose(sighting: Sighting, pose: Estimate, prior: PosePrior, sigma_px: Real) -> Real:
+    """(M,) log density of the places about one pose, for (M, N) errors of theirs, but for the
+    factor that the normal density has of these alone."""
+    count, optics = len(sigma_px), sighting.camera.optics
     R, t = np.broadcast_to(pose.R, (count, 3, 3)), np.broadcast_to(pose.t, (count, 3))
-    known, _, chi_square, seen = normal_equations(sighting, R, t, np.sqrt(variances))
+    known, _, chi_square, seen = normal_equations(sighting, R, t, sigma_px)
     if not (seen[0] and optics.sees(pose.t)):
         return np.full(count, -np.inf)
     known[:, 3:, 3:] += prior.R_information
     known[:, :3, :3] += np.eye(3) / float(optics.depth(pose.t)) ** 2
-    fit = -0.5 * chi_square - np.log(2 * np.pi * variances).sum(axis=1)
     volume = 3 * np.log(2 * np.pi) - 0.5 * np.linalg.slogdet(known)[1]
-    return np.asarray(fit + volume + prior.log_density(pose.R, pose.t, optics))
+    return np.asarray(volume - 0.5 * chi_square + prior.log_density(pose.R, pose.t, optics))

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
-from chromadock.geometry.native import doubles
+from chromadock.native import doubles
 
 Real = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
-from chromadock.geometry.native import doubles
 from chromadock.geometry.pose import Sighting
+from chromadock.native import doubles
 
 Real = NDArray[np.float64]
 

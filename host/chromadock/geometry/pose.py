@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
 from chromadock.camera import CameraModel
-from chromadock.geometry.native import doubles
 from chromadock.geometry.starts import Flat, solutions, starts_of_three, tilted_back
+from chromadock.native import doubles
 from chromadock.results.pose import Pose
 from chromadock.rotation import quaternion_from_matrix
 

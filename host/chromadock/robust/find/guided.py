@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
 from chromadock.camera import CameraModel
-from chromadock.geometry.native import doubles
 from chromadock.geometry.pose import MIN_MARKERS, Estimate, projected
+from chromadock.native import doubles
 from chromadock.robust.weigh.evidence import PlacedPeaks
 
 HIDDEN: float = lib.GUIDED_HIDDEN

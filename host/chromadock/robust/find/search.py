@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
-from chromadock.geometry.native import doubles
+from chromadock.native import doubles
 from chromadock.robust.frame.peaks import Peaks
 from chromadock.robust.weigh.evidence import PlacedPeaks, room
 from chromadock.robust.weigh.shape import FACETS, Complex, Real, ShapeModel, Window

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
-from chromadock.geometry.native import doubles
+from chromadock.native import doubles
 from chromadock.robust.frame.layout import FINE_CELL
 from chromadock.robust.frame.overexposure import CLIPPED, clipped_at
 from chromadock.robust.frame.response import filtered, linear

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
-from chromadock.geometry.native import doubles
+from chromadock.native import doubles
 from chromadock.robust.frame.peaks import MAX_PEAKS, MIN_SNR, NEIGHBOURHOOD, Peaks
 from chromadock.robust.weigh import chroma, clutter
 

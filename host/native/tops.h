@@ -29,7 +29,7 @@
 
 /* Standard error in pixels that a sensor's colour mosaic leaves the sharpest
  * lamp: of red and of blue light it sees every fourth pixel. */
-#define TOPS_SAMPLING 0.17
+#define TOPS_SAMPLING 0.12
 
 /* The share of it that is left to a blunt lamp.  Bend over height of a top at
  * the least width, in steps: of a lamp that falls between the mosaic's samples,
@@ -40,14 +40,14 @@
 
 /* Standard error left to the brightest lamp, by the smoothing's width: what
  * stands behind it is not flat, and shifts the top. */
-#define TOPS_FLOOR 0.03
+#define TOPS_FLOOR 0.02
 
 /* Standard error of a place, in its top's way from one smoothing to the next
  * one half an octave narrower or wider, whichever is shorter.  The top of a
  * round lamp stays where it is; that of the corner of two bright bars, or of a
  * lamp that a bar draws aside, goes on with each width, and is off by two or
  * three such steps. */
-#define TOPS_DRIFT 1.0
+#define TOPS_DRIFT 0.9
 
 /* Where a lamp may be: x, y in steps from the patch's middle;
  * sigma: standard deviation in x as in y, pixels, if it is a lamp and round;

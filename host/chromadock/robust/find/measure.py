@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass, field, replace
 from itertools import product
 
@@ -140,7 +139,9 @@ class Measure:
     def _accepted(self, candidate: Candidate) -> Constellation | None:
         peaks, members = candidate.peaks, candidate.members
         found = candidate.xy
-        tops = self._refined(found, candidate.cell, peaks.noise[members], peaks.best[members])
+        tops = refined(
+            self.frame_bgr, found, candidate.cell, self.response, peaks.noise[members]
+        )
         if tops is None:
             return None
         xy, sigma, drift = _choices(tops)
@@ -204,7 +205,7 @@ class Measure:
     ) -> Constellation | None:
         """What was guessed, measured: markers at the places that are nearest to the guess."""
         found = peaks.xy[guess.members]
-        tops = self._refined(found, cell, peaks.noise[guess.members], peaks.best[guess.members])
+        tops = refined(self.frame_bgr, found, cell, self.response, peaks.noise[guess.members])
         if tops is None:
             return None
         places = found if guess.expected is None else guess.expected
@@ -230,17 +231,6 @@ class Measure:
         # About a track's pose the track says how sure the place is.
         unsure = 0.0 if priors else self._doubt(sighting, poses, weights)
         return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure, amiss)
-
-    def _refined(
-        self,
-        xy: NDArray[np.float64],
-        cell: int,
-        noise: NDArray[np.float64],
-        best: NDArray[np.uint8],
-    ) -> list[Tops] | None:
-        # All markers shine in one colour: they are looked at through the filter of most of them.
-        [(common, _)] = Counter(best.tolist()).most_common(1)
-        return refined(self.frame_bgr, xy, cell, self.response.weights[common][None], noise)
 
 
 def misfit(

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from chromadock._native import ffi, lib
 from chromadock.native import doubles
 from chromadock.robust.frame.layout import FINE_CELL
-from chromadock.robust.frame.overexposure import CLIPPED, clipped_at
-from chromadock.robust.frame.response import filtered, linear
+from chromadock.robust.frame.overexposure import clipped_at
+from chromadock.robust.frame.response import Response, linear
 
 WIDTHS = tuple(1.4 * 2 ** (k / 2) for k in range(7))
 """Standard deviations of the smoothing, half an octave apart, in steps of a pixel for finest
@@ -40,8 +40,12 @@ SHIFT_PER_SPACING = 1 / 3
 MAX_SHIFT: int = lib.TOPS_FARTHEST
 """A lamp's top is looked for within this of where it was supposed: steps."""
 
-INFLATION = 1.4
+INFLATION = 1.05
 """True errors are so much larger than independent noise makes them: water's and JPEG's is not."""
+
+_LAMP = 3.0 * WIDTHS[0]  # steps: what is nearer to a supposed place is the lamp, no noise
+# Variance of linear light in the dark that 8 bits leave, as the least smoothing leaves it.
+_ROUNDING = 1e-8
 
 _WIDTHS = doubles(np.array(WIDTHS))
 
@@ -74,36 +78,51 @@ def refined(
     frame_bgr: NDArray[np.uint8],
     xy: NDArray[np.float64],
     cell: int,
-    weights: NDArray[np.float32],
+    response: Response,
     noise: NDArray[np.float64],
 ) -> list[Tops] | None:
-    """Subpixel places of n lamps.
+    """Subpixel places of n lamps of one colour.
 
     The light is smoothed by differences of Gaussians of growing width, the top nearby climbed
     to, and the width kept that locates best.  That is the one that fits the lamp (Lindeberg,
     IJCV 30 (1998) 79: the maximum of the scale-normalised Laplacian), so that a core which the
     sensor clips to a plateau is located by its outline and halo, which clip to no side.
 
+    The channels are added up with weights of what the lamps add to each, over how much the pixels
+    about them scatter in it: the filter of least noise, if channels fluctuate independently.  No
+    weight is negative.  The filters that find lamps take one channel's light from another's; but
+    pixels, unlike cells, have their colour from a mosaic and from JPEG at half the resolution, and
+    what is taken away there moves the top.
+
     Parameters
     ----------
     frame_bgr : (H, W, 3) uint8.
     xy : (n, 2) pixels, about where they are.
     cell : pixels, of the scale they were found at.
-    weights : (1, 3), of the response's filters that which the lamps answer most.
-    noise : (n,) standard deviation of the filtered light of cells about each.
+    response : what the filters made of the frame.
+    noise : (n,) standard deviation of the filtered light of cells about each lamp, for filters
+        through which the frame's cells fluctuate by 1.
 
     Returns
     -------
     n of them; None where one has no top, or none that says more than where it was supposed.
     """
     step = max(cell // FINE_CELL, 1)
+    groups = [
+        (lamps, _patches(frame_bgr, xy[lamps], step, spacing / step))
+        for lamps, spacing in _by_spacing(xy)
+    ]
+    added = response.added_near(xy, cell).sum(axis=0)
+    weights = _weights(added, [patches for _, patches in groups], response.covariance)
     found: dict[int, Tops] = {}
-    for lamps, spacing in _by_spacing(xy):
-        patches = _patches(frame_bgr, xy[lamps], step, weights, spacing / step)
+    for lamps, patches in groups:
         # A cell is so many steps wide, and independent noise averages out by as much.
         slopes = _NOISE_SLOPE * INFLATION * cell * noise[lamps]
-        for lamp, patch, slope in zip(lamps, patches, slopes.tolist(), strict=True):
-            tops = _tops(patch, step, slope)
+        light = patches.through(weights)
+        for lamp, middle, smoothed, slope in zip(
+            lamps, patches.middles, light, slopes.tolist(), strict=True
+        ):
+            tops = _tops(middle, smoothed, patches.reach, step, slope)
             if tops is None or tops.sigma[0] > MAX_SHIFT * step:
                 return None
             found[lamp] = tops
@@ -121,25 +140,33 @@ def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Patch:
-    """Filtered light about a lamp; ``middle`` (2,): pixels, of its middle step.
+class _Patches:
+    """Light about n lamps; ``middles`` (n, 2): pixels, of their middle steps.
 
-    ``smoothed`` (k + 2, s, s) float32: by the first so many of WIDTHS, of which k are looked at.
-    ``reach``: steps from the middle that the lamp may be.
+    ``smoothed`` (n, 3, k + 2, s, s) float32: linear BGR, by the first so many of WIDTHS, of which k
+    are looked at.  ``reach``: steps from the middle that the lamp may be.
     """
 
-    middle: NDArray[np.float64]
+    middles: NDArray[np.float64]
     smoothed: NDArray[np.float32]
     reach: float
 
+    def scatter(self) -> NDArray[np.float64]:
+        """(n, 3): variance of each channel about each lamp, as it is smoothed to look at the
+        smallest lamps."""
+        finest = self.smoothed[:, :, 0] - self.smoothed[:, :, 2]
+        return np.asarray(finest[:, :, _about(finest.shape[-1])].var(axis=2), np.float64)
+
+    def through(self, weights: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(n, k + 2, s, s): the light through (3,) weights."""
+        lamps, channels, *shape = self.smoothed.shape
+        light = weights @ self.smoothed.reshape(lamps, channels, -1)
+        return np.asarray(light.reshape(lamps, *shape))
+
 
 def _patches(
-    frame_bgr: NDArray[np.uint8],
-    xy: NDArray[np.float64],
-    step: int,
-    weights: NDArray[np.float32],
-    spacing: float,
-) -> list[_Patch]:
+    frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64], step: int, spacing: float
+) -> _Patches:
     """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker."""
     reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
     large = step > 1 or clipped_at(frame_bgr, xy).all()
@@ -150,31 +177,35 @@ def _patches(
     side = 2 * around + 1
     corners = np.rint(xy).astype(np.intp) - side * step // 2
     cuts = [_cut(frame_bgr, left, top, side * step) for left, top in corners.tolist()]
-    light = _shining(np.concatenate(cuts), weights)
+    light = linear(np.concatenate(cuts))
     if step > 1:
         size = (side, side * len(xy))
         light = np.asarray(cv2.resize(light, size, interpolation=cv2.INTER_AREA), np.float32)
+    channels = light.reshape(len(xy), side, side, 3).transpose(0, 3, 1, 2)
     smoothers = _smoothers(middle, around, len(widths) + 2)
     # So many small products, and not one large one: OpenBLAS, numpy's as OpenCV's, would start
     # threads for that, which wait for each other where other processes are busy.
-    across = light.reshape(len(xy), 1, side, side) @ smoothers.transpose(0, 2, 1)
-    smoothed = smoothers @ across
+    across = np.ascontiguousarray(channels)[:, :, None] @ smoothers.transpose(0, 2, 1)
     middles = corners + (around + 0.5) * step - 0.5
-    return [_Patch(at, lamp, reach) for at, lamp in zip(middles, smoothed, strict=True)]
+    return _Patches(middles, smoothers @ across, reach)
 
 
-def _shining(pixels: NDArray[np.uint8], weights: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Filtered light (h, w) of (h, w, 3) pixels.
+def _weights(
+    added: NDArray[np.float64], groups: list[_Patches], covariance: NDArray[np.float64]
+) -> NDArray[np.float32]:
+    """(3,): those of ``refined``, such that cells whose light has that covariance fluctuate by 1
+    through them.  A channel in which the lamps take light away counts for nothing."""
+    scatter = np.concatenate([group.scatter() for group in groups]).mean(axis=0)
+    weights = np.maximum(added, 0.0) / (scatter + _ROUNDING)
+    fluctuation = math.sqrt(weights @ covariance @ weights)
+    return np.asarray(weights / max(fluctuation, 1e-30), np.float32)
 
-    What a clipped channel says is too little.  Where one is, the others take nothing away: or a
-    lamp's core, which clips in more of them than its halo, would be a hole in it.
-    """
-    colour = linear(pixels)
-    light = filtered(colour, weights)
-    clipped = cv2.inRange(pixels, (0, 0, 0), 3 * (CLIPPED - 1,)) == 0
-    if clipped.any():
-        light[clipped] = filtered(colour, np.maximum(weights, 0))[clipped]
-    return light
+
+@lru_cache
+def _about(side: int) -> NDArray[np.bool_]:
+    """(side, side): which steps of a patch are no part of the lamp in its middle."""
+    off = np.arange(side) - side // 2
+    return np.asarray(off**2 + off[:, None] ** 2 > _LAMP**2)
 
 
 def _cut(image: NDArray[np.uint8], left: int, top: int, side: int) -> NDArray[np.uint8]:
@@ -195,15 +226,21 @@ def _smoothers(middle: int, around: int, count: int) -> NDArray[np.float32]:
     return np.asarray(weights / weights.sum(axis=2, keepdims=True), np.float32)
 
 
-def _tops(patch: _Patch, step: int, slope: float) -> Tops | None:
-    """Where the lamp may be, for light whose noise has so steep a slope, smoothed by 1 step; None
-    where there is no top."""
+def _tops(
+    middle: NDArray[np.float64],
+    smoothed: NDArray[np.float32],
+    reach: float,
+    step: int,
+    slope: float,
+) -> Tops | None:
+    """Where a lamp may be, of smoothed light (k + 2, s, s) whose noise has so steep a slope,
+    smoothed by 1 step; None where there is no top.  The others: see ``_Patches``."""
     tops = np.empty((lib.TOPS_MOST, 4))
-    layers, side, _ = patch.smoothed.shape
-    smoothed = ffi.from_buffer("float[]", patch.smoothed)
-    given = (layers - 2, side, smoothed, _WIDTHS, patch.reach, step, slope)
+    layers, side, _ = smoothed.shape
+    light = ffi.from_buffer("float[]", smoothed)
+    given = (layers - 2, side, light, _WIDTHS, reach, step, slope)
     count = lib.tops_find(ffi.new("tops_patch_t *", given), ffi.from_buffer("tops_top_t[]", tops))
     if not count:
         return None
     x_y, sigma, drift = tops[:count, :2], tops[:count, 2], tops[:count, 3]
-    return Tops(patch.middle + step * x_y, sigma, drift)
+    return Tops(middle + step * x_y, sigma, drift)

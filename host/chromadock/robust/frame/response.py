@@ -66,6 +66,14 @@ class Response:
         """(N, 3) linear BGR: the light of cells beyond that of the surround, by their index."""
         return self.added.reshape(3, -1)[:, at].T.astype(np.float64)
 
+    def added_near(self, xy: NDArray[np.float64], cell: int) -> NDArray[np.float64]:
+        """(n, 3) linear BGR: the light beyond that of the surround of the cells, ``cell`` pixels
+        wide, in which places (n, 2) of the frame are, pixels."""
+        scale = self.layout.cells.index(cell)
+        last = self.layout.shapes[scale] - 1
+        row, column = np.clip(np.floor((xy[:, ::-1] + 0.5) / cell).astype(np.intp), 0, last).T
+        return self.added_at(self.layout.at(scale, row, column))
+
     def chroma(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
         """(N, 2) radians: how far light (N, 3) is from white."""
         added = np.ascontiguousarray(added, np.float64)

@@ -174,8 +174,10 @@ int32_t tops_find(const tops_patch_t *patch, tops_top_t *tops)
     summit_t own = summits[best];
     /* How sharp the lamp is its narrowest smoothing tells. */
     own.sharpness = stands[0] ? summits[0].sharpness : 0;
-    tops[found++] =
-        top_of(patch, &own, drift_of(summits, stands, patch->count, best));
+    const double drift = drift_of(summits, stands, patch->count, best);
+    if (drift > TOPS_MOST_DRIFT)
+        return 0;
+    tops[found++] = top_of(patch, &own, drift);
     if (patch->count > TOPS_SMALL)
         return found;
     const int32_t middle = patch->side / 2;

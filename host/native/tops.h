@@ -49,6 +49,12 @@
  * three such steps. */
 #define TOPS_DRIFT 0.9
 
+/* Steps from one such smoothing to the next: what moves by more is no lamp, but
+ * light that stands beside something brighter, a bright thing's rim or a bar's
+ * corner. Of 1,545 lamps of drawn scenes that were found the 99th centile is
+ * 0.3, and none moves by one. */
+#define TOPS_MOST_DRIFT 1.0
+
 /* Where a lamp may be: x, y in steps from the patch's middle;
  * sigma: standard deviation in x as in y, pixels, if it is a lamp and round;
  * drift: that of what may draw it aside, pixels. */
@@ -72,8 +78,8 @@ typedef struct {
 } tops_patch_t;
 
 /* The tops of a patch, the likeliest first: the best located one uphill of the
- * middle, then others about.  tops: receives as many as are returned,
- * TOPS_MOST at most. */
+ * middle, then others about; none where that one is no lamp's.  tops: receives
+ * as many as are returned, TOPS_MOST at most. */
 int32_t tops_find(const tops_patch_t *patch, tops_top_t *tops);
 
 #endif

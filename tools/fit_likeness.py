@@ -31,7 +31,7 @@ from chromadock.variety import Backdrops, Half, draw, render
 from chromadock.variety.factors import variety
 
 BACKGROUNDS = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
-TARGET = ROOT / "host" / "chromadock" / "robust" / FILE
+TARGET = ROOT / "host" / "chromadock" / "robust" / "frame" / FILE
 RIDGE = 1.0
 """Added to each coefficient's curvature: none runs away where classes part."""
 LAMPS_CELLS, CLUTTER_CELLS = 0.8, 4.0

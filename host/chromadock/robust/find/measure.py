@@ -139,9 +139,7 @@ class Measure:
     def _accepted(self, candidate: Candidate) -> Constellation | None:
         peaks, members = candidate.peaks, candidate.members
         found = candidate.xy
-        tops = refined(
-            self.frame_bgr, found, candidate.cell, self.response, peaks.noise[members]
-        )
+        tops = refined(self.frame_bgr, found, candidate.cell, self.response, peaks.noise[members])
         if tops is None:
             return None
         xy, sigma, drift = _choices(tops)

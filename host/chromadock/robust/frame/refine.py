@@ -186,7 +186,7 @@ def _patches(
     # So many small products, and not one large one: OpenBLAS, numpy's as OpenCV's, would start
     # threads for that, which wait for each other where other processes are busy.
     across = np.ascontiguousarray(channels)[:, :, None] @ smoothers.transpose(0, 2, 1)
-    middles = corners + (around + 0.5) * step - 0.5
+    middles = np.asarray(corners + (around + 0.5) * step - 0.5, np.float64)
     return _Patches(middles, smoothers @ across, reach)
 
 

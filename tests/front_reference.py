@@ -53,7 +53,7 @@ def covariance_of(light: np.ndarray) -> np.ndarray:
     rows = light[4::8].astype(np.float64)
     bent = (rows[:, 4:] + rows[:, :-4] - 2 * rows[:, 2:-2]).reshape(-1, 3)
     size = np.abs(bent).sum(axis=1)
-    kept = bent[size <= 2.5 * size.mean()]
+    kept = bent[size <= 8 * size.mean()]
     return kept.T @ kept / (6 * len(kept)) + 5e-9 * np.eye(3)
 
 
@@ -96,7 +96,6 @@ class Peak:
     noise: float
     chroma: np.ndarray
     likeness: float
-    best: int
     looks: np.ndarray
     inside: float
 
@@ -177,7 +176,6 @@ def peak_of(
         max(added @ weights, 1e-6) / centre,
         chroma_of(added, response),
         likeness_of(looks, strength, k),
-        int(scale.best[y, x]),
         looks,
         inside_of(xy, response),
     )

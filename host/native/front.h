@@ -132,7 +132,6 @@ typedef struct {
     double *likeness;   /* log likelihood ratio of a lamp to clutter */
     double *inside;     /* share of the square about it, as wide as the
                          * neighbourhood, that lies inside the frame */
-    uint8_t *best;      /* the filter that answers most */
     uint8_t *promising; /* 1 if the peak is to be searched for markers */
 } front_peaks_t;
 

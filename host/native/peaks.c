@@ -215,7 +215,6 @@ static void describe(const front_frame_t *frame, const summit_t *summit,
     front_chroma(frame, exact, 1, peaks->chroma + 2 * k);
     peaks->snr[k] = (double)summit->strength;
     peaks->noise[k] = (double)(greater(excess, 1e-6F) / summit->centre);
-    peaks->best[k] = (uint8_t)best;
 }
 
 void front_find(const front_frame_t *frame, const double *with_looks,

@@ -20,9 +20,7 @@ def log_common(chroma: np.ndarray, sets: np.ndarray, z: np.ndarray, snr: np.ndar
     count, along = len(chroma), np.zeros(sets.shape[1])
     nothing, order = np.zeros(count), np.arange(count)
     xy = np.column_stack([z.real, z.imag])
-    peaks = Peaks(
-        xy, snr, nothing, chroma, nothing, order.astype(np.uint8), order, np.ones(len(snr))
-    )
+    peaks = Peaks(xy, snr, nothing, chroma, nothing, order, np.ones(len(snr)))
     rest = []
     for members in sets.tolist():
         others = [i for i in range(count) if i not in members]

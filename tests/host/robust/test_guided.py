@@ -30,9 +30,7 @@ def peaks(*, shown: list[int], specks: int, seed: int = 0) -> Peaks:
     snr = np.concatenate([np.full(len(shown), 12.0), np.sort(rng.uniform(3, 11, specks))[::-1]])
     nothing, every = np.zeros(len(xy)), np.arange(len(xy))
     chroma = np.zeros((len(xy), 2))
-    return Peaks(
-        xy, snr, np.ones(len(xy)), chroma, nothing, every.astype(np.uint8), every, np.ones(len(xy))
-    )
+    return Peaks(xy, snr, np.ones(len(xy)), chroma, nothing, every, np.ones(len(xy)))
 
 
 def expectation(points: np.ndarray, prior: Estimate) -> Expectation:

@@ -40,7 +40,7 @@ def best_of(*candidates: Candidate) -> tuple[Constellation | None, list[int]]:
 
 def candidate(members: np.ndarray, decades: float, cell: int = 4) -> Candidate:
     flat, count = np.zeros((len(PLACES), 2)), len(PLACES)
-    rest = (np.ones(count), np.ones(count), flat, np.ones(count), np.zeros(count, np.uint8))
+    rest = (np.ones(count), np.ones(count), flat, np.ones(count))
     peaks = Peaks(PLACES, *rest, np.arange(count), np.ones(count))
     among = SearchedPeaks(PLACES, peaks, 640 * 480)
     return Candidate(cell, among, members, 0.0, decades * DECADE)

@@ -70,9 +70,9 @@ def seen(points: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 def peaks_of(xy: np.ndarray, snr: np.ndarray, chroma: np.ndarray, likeness: np.ndarray) -> Peaks:
     """The first MAX_PROMISING of them promising, their neighbourhoods more and less in view."""
-    nothing, promising = np.zeros(len(xy), np.uint8), np.arange(min(len(xy), MAX_PROMISING))
+    promising = np.arange(min(len(xy), MAX_PROMISING))
     inside = 0.6 + 0.4 * np.sin(np.arange(len(xy))) ** 2
-    return Peaks(xy, snr, np.ones(len(xy)), chroma, likeness, nothing, promising, inside)
+    return Peaks(xy, snr, np.ones(len(xy)), chroma, likeness, promising, inside)
 
 
 def look(count: int, z: np.ndarray, peaks: Peaks, least: float) -> Candidates:

@@ -32,10 +32,10 @@ class Peaks:
     brightest 2 x 2 cells about each: wherever in a cell a lamp falls, they catch its light.
     ``noise`` (N,) float64: standard deviation of the filtered light of cells thereabouts.
     ``chroma`` (N, 2) float64: radians, see ``Response.chroma``.  ``likeness`` (N,) float64: see
-    ``likeness``.  ``best`` (N,) uint8: the filter that answers most.  ``promising``: indices,
-    ascending, of those to be searched for markers: likelier lamps than clutter as strong is
-    common.  ``inside`` (N,) float64: share of the neighbourhood of each in which clutter is counted
-    that lies inside the frame.  ``looks`` (N, LOOKS) float64: see ``likeness``.
+    ``likeness``.  ``promising``: indices, ascending, of those to be searched for markers: likelier
+    lamps than clutter as strong is common.  ``inside`` (N,) float64: share of the neighbourhood of
+    each in which clutter is counted that lies inside the frame.  ``looks`` (N, LOOKS) float64: see
+    ``likeness``.
     """
 
     xy: NDArray[np.float64]
@@ -43,7 +43,6 @@ class Peaks:
     noise: NDArray[np.float64]
     chroma: NDArray[np.float64]
     likeness: NDArray[np.float64]
-    best: NDArray[np.uint8]
     promising: NDArray[np.intp]
     inside: NDArray[np.float64]
     looks: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, LOOKS)))
@@ -54,8 +53,8 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
     places = MAX_PEAKS * len(response.layout.cells)
     xy, chroma, looks = (np.empty((places, n)) for n in (2, 2, LOOKS))
     snr, noise, likeness, inside = np.empty((4, places))
-    best, promising = np.empty((2, places), np.uint8)
-    arrays = xy, snr, noise, chroma, looks, likeness, inside, best, promising
+    promising = np.empty(places, np.uint8)
+    arrays = xy, snr, noise, chroma, looks, likeness, inside, promising
     native = ffi.new("front_peaks_t *", ([], *map(pointer, arrays)))
     lib.front_find(response.native, *map(pointer, coefficients()), native)
     found = {}
@@ -68,7 +67,6 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
             noise[these],
             chroma[these],
             likeness[these],
-            best[these],
             np.flatnonzero(promising[these]),
             inside[these],
             looks[these],

@@ -87,11 +87,6 @@ def linear(image: NDArray[np.uint8]) -> NDArray[np.float32]:
     return np.asarray(cv2.LUT(image, _LINEAR), np.float32)
 
 
-def filtered(light: NDArray[np.float32], weights: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(h, w, 3) light through (1, 3) weights: (h, w)."""
-    return np.asarray(cv2.transform(light, weights), np.float32)
-
-
 def respond(
     frame_bgr: NDArray[np.uint8], hue: int, focal_px: float, preferred: bool = True
 ) -> Response:

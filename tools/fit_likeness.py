@@ -23,6 +23,7 @@ from step import ROOT
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.vehicle import vehicle_background
 from chromadock.method import HUE_RANGE
+from chromadock.robust.frame import likeness
 from chromadock.robust.frame.likeness import FILE, design
 from chromadock.robust.frame.peaks import find_peaks
 from chromadock.robust.frame.response import respond
@@ -31,7 +32,7 @@ from chromadock.variety import Backdrops, Half, draw, render
 from chromadock.variety.factors import variety
 
 BACKGROUNDS = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
-TARGET = ROOT / "host" / "chromadock" / "robust" / "frame" / FILE
+TARGET = Path(likeness.__file__).with_name(FILE)
 RIDGE = 1.0
 """Added to each coefficient's curvature: none runs away where classes part."""
 LAMPS_CELLS, CLUTTER_CELLS = 0.8, 4.0

@@ -51,8 +51,8 @@
 
 /* Steps from one such smoothing to the next: what moves by more is no lamp, but
  * light that stands beside something brighter, a bright thing's rim or a bar's
- * corner. Of 1,545 lamps of drawn scenes that were found the 99th centile is
- * 0.3, and none moves by one. */
+ * corner. Of 1,545 lamps found in drawn scenes of the half that was developed
+ * on the 99th centile is 0.35, and the greatest 0.98. */
 #define TOPS_MOST_DRIFT 1.0
 
 /* Where a lamp may be: x, y in steps from the patch's middle;

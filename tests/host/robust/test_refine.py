@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from chromadock.robust.frame.refine import refined
+from chromadock.robust.frame.refine import _tops, refined
 from chromadock.robust.frame.response import Response, respond
 
 LENS_PX = 1.2
@@ -170,3 +170,18 @@ def test_the_corner_of_bright_bars_is_no_sure_place_of_the_lamp_that_stands_on_i
     sigma = [np.hypot(tops.sigma[0], tops.drift[0]) for tops in found]
     assert min(off) > 1
     assert max(np.array(off) / sigma) < 4
+
+
+@pytest.mark.parametrize(("way", "stands"), [(0.5, True), (2.0, False)])
+def test_what_moves_by_more_than_a_step_with_the_smoothing_is_no_lamp(
+    way: float, stands: bool
+) -> None:
+    y, x = np.mgrid[-10:11, -10:11].astype(float)
+    narrow = np.exp(-0.5 * (x**2 + y**2) / 2**2)
+    wide = 0.2 * np.exp(-0.5 * ((x - way) ** 2 + y**2) / 4**2)
+    nothing = np.zeros_like(x)
+    smoothed = np.stack([narrow, wide, nothing, nothing]).astype(np.float32)
+    tops = _tops(np.array([50.0, 60.0]), smoothed, reach=4.0, step=1, slope=0.01)
+    assert (tops is not None) == stands
+    if tops is not None:
+        assert tops.xy[0] == pytest.approx([50.0, 60.0])

@@ -33,7 +33,7 @@ def declarations() -> str:
                 # What another header declares is taken from that one.
                 own = Path(marker.group(1)) == header
             elif own and macro:
-                real = re.search(r"\d\.\d", macro.group(2))
+                real = re.search(r"\d\.\d|\b\d+e[-+]?\d", macro.group(2))
                 kept.append((NUMBER if real else INTEGER).format(macro.group(1)))
             elif own and not line.startswith("#"):
                 kept.append(line)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, same_rotation
 from chromadock.geometry.pose import refined as refined_pose
-from chromadock.geometry.profile import widened
 from chromadock.results.detection import Misfit
 from chromadock.robust.find.guided import HIDDEN, Expectation, Guess
 from chromadock.robust.find.search import SearchedPeaks
 from chromadock.robust.find.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
+from chromadock.robust.frame.flux import fluxes
 from chromadock.robust.frame.peaks import Peaks
 from chromadock.robust.frame.plateau import on_one_thing
 from chromadock.robust.frame.refine import Tops, refined
@@ -24,14 +24,12 @@ from chromadock.robust.weigh.acceptance import (
     LEAST_EVIDENCE,
     LEAST_FOR_A_TRACK,
     LIKELY,
-    NO_DOUBT,
     Constellation,
-    doubt,
 )
 from chromadock.robust.weigh.evidence import PlacedPeaks
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
 from chromadock.robust.weigh.shape import MIN_SPACING_CELLS
-from chromadock.robust.weigh.tilts import doubt_over_tilts
+from chromadock.robust.weigh.told import fitted_again, told
 from chromadock.robust.weigh.twin import is_image_of
 
 MISFIT_DECADES = 8.0
@@ -48,9 +46,6 @@ MAX_CHOICES = 3
 
 SAME_PLACE_PX = 4.0
 """Of exact places: two that are nearer than this to each other are one lamp."""
-
-SAME_ERROR = 0.05
-"""Share by which markers' errors may grow and the poses stay as they are fitted."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -159,15 +154,11 @@ class Measure:
             self.misfits.extend(filter(None, [amiss]))
             return None
         amiss = misfit(evidence, poses, np.hypot(sigma[k], drift[k]))
-        poses, weights, sighting = _again(sighting, poses, placed, drift[k])
-        if self._too_far(poses):
-            return None
-        wide = tuple(widened(sighting, pose) for pose in poses)
-        if not self._all_belong(candidate, sighting, wide[0]):
+        sighting, poses, unsure = self._told(sighting, poses, placed, drift[k])
+        if self._too_far(poses) or not self._all_belong(candidate, sighting, poses[0]):
             return None
         markers = np.arange(len(self.view.points))
-        unsure = self._doubt(sighting, wide, weights)
-        return Constellation(markers, xy[k], sighting.sigma_px, evidence, wide, unsure, amiss)
+        return Constellation(markers, xy[k], sighting.sigma_px, evidence, poses, unsure, amiss)
 
     def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
         """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
@@ -188,15 +179,16 @@ class Measure:
             for marker, place in enumerate(places.tolist())
         )
 
-    def _doubt(
-        self, sighting: Sighting, poses: tuple[Estimate, ...], weights: NDArray[np.float64]
-    ) -> float:
-        """Probability that the first of the poses has the dock at a wrong place."""
-        roughly = doubt([pose.about(self.judged) for pose in poses], weights.tolist())
-        if roughly < NO_DOUBT:
-            return roughly
-        finely = doubt_over_tilts(sighting, poses[0], self.prior, self.judged)
-        return roughly if finely is None else finely
+    def _told(
+        self,
+        sighting: Sighting,
+        poses: tuple[Estimate, ...],
+        placed: Placement,
+        drift_px: NDArray[np.float64],
+    ) -> tuple[Sighting, tuple[Estimate, ...], float]:
+        """See ``weigh.told``."""
+        bright = fluxes(self.frame_bgr, sighting.pixels)
+        return told(sighting, poses, placed, drift_px, bright, self.prior, self.judged)
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
@@ -222,12 +214,14 @@ class Measure:
             return None
         whole = len(guess.markers) == len(self.view.points)
         amiss = misfit(evidence, poses, np.hypot(sigma, drift)) if whole else None
-        poses, weights, sighting = _again(sighting, poses, placed, drift)
+        if priors:
+            # About a track's pose the track says how sure the place is.
+            sighting, poses, _ = fitted_again(sighting, poses, placed, drift)
+            unsure = 0.0
+        else:
+            sighting, poses, unsure = self._told(sighting, poses, placed, drift)
         if self._too_far(poses):
             return None
-        poses = poses if priors else tuple(widened(sighting, pose) for pose in poses)
-        # About a track's pose the track says how sure the place is.
-        unsure = 0.0 if priors else self._doubt(sighting, poses, weights)
         return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure, amiss)
 
 
@@ -251,28 +245,6 @@ def _choices(tops: list[Tops]) -> tuple[NDArray[np.float64], ...]:
     each = MAX_CHOICES if len(tops) <= 4 else 2
     of_all = [t.xy for t in tops], [t.sigma for t in tops], [t.drift for t in tops]
     return tuple(np.array(list(product(*(of[:each] for of in values)))) for values in of_all)
-
-
-def _again(
-    sighting: Sighting,
-    poses: tuple[Estimate, ...],
-    placed: Placement,
-    drift_px: NDArray[np.float64],
-) -> tuple[tuple[Estimate, ...], NDArray[np.float64], Sighting]:
-    """Poses fitted with the errors that the markers turned out to have, the likeliest first, and
-    their weights; the sighting with those errors.
-
-    What may draw a marker aside, by ``drift_px`` (n,), counts here and not in the evidence: that a
-    place is not sure makes a pose less sure, but no dock of what would be none with sure places.
-    """
-    order = np.argsort(-placed.weights, kind="stable").tolist()
-    poses, weights = tuple(poses[k] for k in order), placed.weights[order]
-    sigma_px = np.hypot(placed.sigma_px, drift_px)
-    if (np.abs(sigma_px / sighting.sigma_px - 1) <= SAME_ERROR).all():
-        return poses, weights, sighting
-    sighting = replace(sighting, sigma_px=sigma_px)
-    again = tuple(refined_pose(sighting, pose.R, pose.t) or pose for pose in poses)
-    return again, weights, sighting
 
 
 def _downhill(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimate, ...]:

@@ -27,7 +27,7 @@ MIN_SIDE: int = lib.FRONT_MIN_SIDE
 HUES: int = lib.FRONT_HUES
 """Hues that are looked for at once, evenly about the circle from the expected one."""
 
-_LINEAR = ((np.arange(256) / 255) ** GAMMA).astype(np.float32)
+LINEAR = ((np.arange(256) / 255) ** GAMMA).astype(np.float32)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -84,7 +84,7 @@ class Response:
 
 def linear(image: NDArray[np.uint8]) -> NDArray[np.float32]:
     """8-bit encoded values to linear light, 0..1."""
-    return np.asarray(cv2.LUT(image, _LINEAR), np.float32)
+    return np.asarray(cv2.LUT(image, LINEAR), np.float32)
 
 
 def respond(
@@ -123,7 +123,7 @@ def respond(
     native = ffi.new("front_frame_t *", (layout.native[0], *map(pointer, arrays)))
     less = lib.FRONT_UNEXPECTED if preferred else 0.0
     signatures = _signatures(hue)
-    tables = pointer(_LINEAR), pointer(signatures)
+    tables = pointer(LINEAR), pointer(signatures)
     if lib.front_respond(native, pointer(picture), pixels, *tables, less):
         raise MemoryError("no memory for a frame's response")
     return Response(weights, axes, covariance, layout, light, added, snr, best, native)
@@ -139,4 +139,4 @@ def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
 def _signatures(hue: int) -> NDArray[np.float64]:
     """(HUES, 3) linear BGR: the purest colours of the hues that are looked for, ``hue`` first."""
     hues = [(hue + HUE_RANGE * k // HUES) % HUE_RANGE for k in range(HUES)]
-    return np.array([_LINEAR[list(rgb_from_hsv(h, 255, 255))[::-1]] for h in hues], np.float64)
+    return np.array([LINEAR[list(rgb_from_hsv(h, 255, 255))[::-1]] for h in hues], np.float64)

@@ -2,6 +2,7 @@
 
 ``shape`` knows the dock's likely views, ``evidence`` what strengths, colours (``chroma``) and the
 frame's other peaks (``clutter``) say; ``placement`` weighs exact places over all poses.
-``acceptance`` has the thresholds, ``tilts`` the doubt that is left about a pose, and ``twin`` tells
-the dock from its image in the surface.  All evidence is a natural logarithm of a likelihood ratio.
+``acceptance`` has the thresholds; ``told`` says which pose is told and how much to doubt it: by
+``nearness``, what the markers' brightness says, over all ``tilts``, or all poses of ``three``
+markers.  ``twin`` tells the dock from its image in the surface.  All evidence is a natural logarithm of a likelihood ratio.
 """

@@ -10,7 +10,7 @@ less likely, and that is all.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import cv2
@@ -70,12 +70,30 @@ class PosePrior:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Placement:
-    """``log_density`` of the places, a square pixel each; ``sigma_px`` (N,): their errors, with
-    what they turned out to share; ``weights`` (P,): of the poses, which sum to 1."""
+    """``log_density`` of the places, a square pixel each; ``weights`` (P,): of the poses, which sum
+    to 1.  ``variances`` (M, N): squares of the places' errors with what they may share, and
+    ``shares`` (M,): how likely each of these turned out to be."""
 
     log_density: float
-    sigma_px: Real
     weights: Real
+    variances: Real
+    shares: Real
+
+    @property
+    def sigma_px(self) -> Real:
+        """(N,): the places' errors, with what they turned out to share."""
+        return np.asarray(np.sqrt(self.shares @ self.variances))
+
+    def errors(self, count: int) -> Real:
+        """(count, N): errors that the places may have, of each kind as many as it is likely."""
+        quantiles = (np.arange(count) + 0.5) / count
+        kind = np.searchsorted(self.shares.cumsum(), quantiles)
+        return np.asarray(np.sqrt(self.variances[np.minimum(kind, len(self.shares) - 1)]))
+
+    def weighed(self, log_density: Real) -> Placement:
+        """The same with what something else says of the poses: (P,) natural logarithms."""
+        weights = self.weights * np.exp(log_density - log_density.max())
+        return replace(self, weights=weights / weights.sum())
 
 
 def placement(sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior) -> Placement:
@@ -86,10 +104,9 @@ def placement(sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior)
     logs += LOG_SHARES - np.log(2 * np.pi * variances).sum(axis=1)
     by_misfit = np.logaddexp.reduce(logs, axis=0)
     shares = np.exp(by_misfit - np.logaddexp.reduce(by_misfit))
-    sigma_px = np.sqrt(shares @ variances)
     by_pose = np.logaddexp.reduce(logs, axis=1)
     weights = np.exp(by_pose - np.logaddexp.reduce(by_pose))
-    return Placement(float(np.logaddexp.reduce(by_misfit)), sigma_px, weights)
+    return Placement(float(np.logaddexp.reduce(by_misfit)), weights, variances, shares)
 
 
 def _of_pose(sighting: Sighting, pose: Estimate, prior: PosePrior, sigma_px: Real) -> Real:

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from chromadock.geometry.many import normal_equations, rotation_vectors, rotations
 from chromadock.geometry.pose import MIN_MARKERS, Estimate, Sighting
+from chromadock.robust.frame.flux import Fluxes
 from chromadock.robust.weigh.acceptance import share_beyond
+from chromadock.robust.weigh.nearness import log_nearness
 from chromadock.robust.weigh.placement import PosePrior
 
 Real = NDArray[np.float64]
@@ -27,10 +29,15 @@ _LEAST_TILTS = 4.0  # that count: fewer, and the lattice is too coarse to integr
 
 
 def doubt_over_tilts(
-    sighting: Sighting, told: Estimate, prior: PosePrior, judged: Real
+    sighting: Sighting,
+    told: Estimate,
+    prior: PosePrior,
+    judged: Real,
+    fluxes: Fluxes | None = None,
 ) -> float | None:
     """Probability that a point of the dock is not where ``told`` has it, to
     ``acceptance.PLACE_TOLERANCE``; the point is ``judged`` (3,), metres, in the sighting's frame.
+    ``fluxes``: of the markers, where they are known.
 
     None where the tilt is known so well that the lattice does not resolve it, or the markers are
     three, which leave open poses between which no tilts lie.
@@ -48,6 +55,7 @@ def doubt_over_tilts(
     log_density -= 0.5 * np.einsum("mi,ij,mj->m", turn, prior.R_information, turn)
     # Of places, as in PosePrior.log_density.
     log_density -= sighting.camera.optics.log_volume(t)
+    log_density += log_nearness(fluxes, sighting.points_dock, R, t)
     weights = np.exp(log_density - log_density.max())
     weights /= weights.sum()
     if 1 / (weights**2).sum() < _LEAST_TILTS:

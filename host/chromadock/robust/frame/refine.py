@@ -47,6 +47,9 @@ _LAMP = 3.0 * WIDTHS[0]  # steps: what is nearer to a supposed place is the lamp
 # Variance of linear light in the dark that 8 bits leave, as the least smoothing leaves it.
 _ROUNDING = 1e-8
 
+# Of a smoothing's weights, as a share of the largest: nothing to 8 bits.
+_NO_WEIGHT = 1e-9
+
 _WIDTHS = doubles(np.array(WIDTHS))
 
 # Standard deviation of the slope of white noise so smoothed, for a width of 1: two Gaussians of
@@ -223,6 +226,8 @@ def _smoothers(middle: int, around: int, count: int) -> NDArray[np.float32]:
     filter all of the patch."""
     off = np.arange(-around, around + 1) - np.arange(-middle, middle + 1)[:, None]
     weights = np.exp(-0.5 * (off / np.array(WIDTHS[:count])[:, None, None]) ** 2)
+    # Sums over numbers that are too small for their type take ten times as long.
+    weights[weights < _NO_WEIGHT] = 0.0
     return np.asarray(weights / weights.sum(axis=2, keepdims=True), np.float32)
 
 

@@ -4,5 +4,6 @@
 frame's other peaks (``clutter``) say; ``placement`` weighs exact places over all poses.
 ``acceptance`` has the thresholds; ``told`` says which pose is told and how much to doubt it: by
 ``nearness``, what the markers' brightness says, over all ``tilts``, or all poses of ``three``
-markers.  ``twin`` tells the dock from its image in the surface.  All evidence is a natural logarithm of a likelihood ratio.
+markers.  ``twin`` tells the dock from its image in the surface.  All evidence is a natural
+logarithm of a likelihood ratio.
 """

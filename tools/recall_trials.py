@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -68,7 +69,8 @@ def scene_trial(
     row = scene.factors() | judged(seen, truth)
     if truth.dock is not None:
         hue = seen.marker.hue_deg
-        row["standing_out"] = standing_out(frame, truth.camera, truth.pixels, hue)
+        dark, _ = render(replace(scene, radiance=0.0))
+        row["standing_out"] = standing_out(frame, truth.camera, truth.pixels, hue, dark)
     if save is not None and not row["recalled"] and (truth.dock is not None or seen.found):
         cv2.imwrite(str(save / f"{seed}-{index}.png"), _marked(frame, truth, seen, scene))
     return row | {"frame_width": frame.shape[1]}

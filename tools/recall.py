@@ -7,9 +7,10 @@
 Scenes are drawn by chromadock.variety; the same seed makes the same ones.  A dock is recalled
 if every marker is within 3 pixels or 0.5 % of the width, whichever is more, and its place within
 5 % of the range; wrong is a dock that is found with its place off by more.  ``limit`` is the
-share of frames in which every marker stands out of the noise at its true place, by the light of its
-lamp alone.  False docks are counted in scenes that show lamps and no dock, and on the photographs of --photographs, each for
-each mapping, as it is and as JPEG once more.  ``--scenes old`` prints the table of docs/robust.md.
+share of frames in which every marker stands out of the noise at its true place, by the light of
+its lamp alone.  False docks are counted in scenes that show lamps and no dock, and on the
+photographs of --photographs, each for each mapping, as it is and as JPEG once more.
+``--scenes old`` prints the older composites' table.
 """
 
 from __future__ import annotations

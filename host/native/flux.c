@@ -1,5 +1,7 @@
 #include "flux.h"
 
+#include "internal/pixels.h"
+
 #include <math.h>
 #include <stddef.h>
 
@@ -11,11 +13,6 @@ typedef struct {
     double light[3];         /* in the disc, linear */
     int32_t codes[3][CODES]; /* how often each is in the ring */
 } pixels_t;
-
-static int32_t within(double value, int32_t size)
-{
-    return (int32_t)fmin(fmax(value, 0), size - 1);
-}
 
 static void collect(const uint8_t *bgr, int32_t height, int32_t width,
                     const float *linear, const double *place, double radius,
@@ -94,7 +91,7 @@ void flux_measure(const uint8_t *bgr, int32_t height, int32_t width,
                 median_of(pixels.codes[c], pixels.around, linear, &scatter);
             added[3 * i + c] =
                 each * (pixels.light[c] - pixels.inside * behind);
-            variance[3 * i + c] = spread * (scatter + FLUX_ROUNDING);
+            variance[3 * i + c] = spread * (scatter + QUANTUM);
         }
     }
 }

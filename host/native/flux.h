@@ -15,9 +15,6 @@
  * every so many-th. */
 #define FLUX_STEPS 12
 
-/* Variance of linear light that 8 bits leave in the dark. */
-#define FLUX_ROUNDING 1e-7
-
 /* Adds up the light of discs, less the median of the ring around each.
  *
  * bgr: height x width x 3 codes. linear: the light of each of 256 codes.

@@ -1,4 +1,5 @@
 #include "internal/cells.h"
+#include "internal/pixels.h"
 #include "internal/vectors.h"
 
 #include <math.h>
@@ -19,9 +20,6 @@
  * that was developed on 1,187 docks are found with a limit of 2.5, 1,196 with
  * 5, 1,199 with 8, and 1,188 with none. */
 #define EDGE 8.0F
-/* Variance of linear light that 8 bits leave in dark water:
- * (2.2 * 0.05^1.2 / 255)^2 / 12. */
-#define QUANTUM 5e-9
 
 /* Means of 2 x 2 pixels of two rows of n numbers, 3 a pixel, rounded, halves
  * up: at every sixth number begins the mean that two pixels have. */

@@ -1,5 +1,7 @@
 #include "plateau.h"
 
+#include "internal/pixels.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -12,11 +14,6 @@ typedef struct {
     const uint8_t *bgr;
     int32_t height, width;
 } picture_t;
-
-static int32_t within(double value, int32_t size)
-{
-    return (int32_t)fmin(fmax(value, 0), size - 1);
-}
 
 /* Means of the 3 x 3 pixels about a place, to the nearest code; beyond the
  * border are the pixels nearest to it. */

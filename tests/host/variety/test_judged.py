@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from limit import standing_out
 from recall_tables import by_distance, by_factors
 from recall_trials import judged
 
@@ -82,3 +83,14 @@ def test_tables_count_by_distance_and_by_factor() -> None:
     assert [line.split()[:3] for line in lines[1:3]] == [["2", "m", "15"], ["4", "m", "15"]]
     lamps = str(sum(s.build == "lamps" for s in scenes))
     assert ["lamps", lamps, "1.000", "1.000", "0"] in [line.split() for line in by_factors(rows)]
+
+
+def test_bars_without_light_do_not_stand_out_as_lamps() -> None:
+    """White bars before the dark shine at the lamps' places, with lamps and without."""
+    factors = {"camera": "vga", "dock": "square", "build": "white bars", "distance": "1.5"}
+    scene = draw(3, 1, Backdrops(), **factors)
+    (lit, truth), (dark, _) = render(scene), render(replace(scene, radiance=0.0))
+    assert standing_out(lit, truth.camera, truth.pixels, 120.0)
+    assert standing_out(lit, truth.camera, truth.pixels, 120.0, dark)
+    assert standing_out(dark, truth.camera, truth.pixels, 120.0)
+    assert not standing_out(dark, truth.camera, truth.pixels, 120.0, dark)

@@ -22,7 +22,8 @@ water; of lamps that shine ahead rather than to all sides it is more by one or t
 
 SPREAD = 0.25
 """Standard deviation of the log flux of one dock's lamps: LEDs, windows and holders differ.  In the
-same scenes it is 0.15, of lamps made more alike than a dock's are after a year in the water."""
+same scenes it is 0.15, in part by what was drawn for them; how it is of real docks nobody has
+measured, so that more is allowed."""
 
 FREEDOM = 3.0
 """Degrees of freedom of the t-distribution that the deviations are supposed to have: one lamp in

@@ -8,7 +8,11 @@
 
 /* Steps on the line through two markers: from as far before the first of them
  * as the second is behind it, to as far behind the second. */
-enum { STEPS = 3 * PLATEAU_SAMPLES };
+enum {
+    STEPS = 3 * PLATEAU_SAMPLES,
+    FIRST_END = PLATEAU_SAMPLES,
+    SECOND_END = 2 * PLATEAU_SAMPLES
+};
 
 typedef struct {
     const uint8_t *bgr;
@@ -41,37 +45,41 @@ static int lesser(int a, int b)
     return a < b ? a : b;
 }
 
+/* How bright light is in a colour: its part along that vector of (B, G, R). */
+static double along(const double colour[3], const int light[3])
+{
+    return colour[0] * light[0] + colour[1] * light[1] + colour[2] * light[2];
+}
+
 /* Whether it is as bright between two places as at both. */
 static bool is_level(const picture_t *picture, const double *from,
                      const double *to)
 {
-    int ends[3], beyond[3], between[3];
-    for (int c = 0; c < 3; c++)
-        ends[c] = beyond[c] = between[c] = UINT8_MAX;
+    int light[STEPS + 1][3], beyond[3] = {UINT8_MAX, UINT8_MAX, UINT8_MAX};
     for (int i = 0; i <= STEPS; i++) {
         const double step = i * (3.0 / STEPS) - 1.0;
-        int light[3];
         mean_about(picture, from[0] + step * (to[0] - from[0]),
-                   from[1] + step * (to[1] - from[1]), light);
-        const bool is_end = i == PLATEAU_SAMPLES || i == 2 * PLATEAU_SAMPLES;
-        const bool is_beyond = i < PLATEAU_SAMPLES || i > 2 * PLATEAU_SAMPLES;
-        int *darkest = is_beyond ? beyond : between;
-        for (int c = 0; c < 3; c++) {
-            darkest[c] = lesser(darkest[c], light[c]);
-            if (is_end)
-                ends[c] = lesser(ends[c], light[c]);
-        }
+                   from[1] + step * (to[1] - from[1]), light[i]);
+        if (i < FIRST_END || i > SECOND_END)
+            for (int c = 0; c < 3; c++)
+                beyond[c] = lesser(beyond[c], light[i][c]);
     }
+    double excess[3], square = 0;
     bool stands_out = false;
     for (int c = 0; c < 3; c++) {
-        const double excess = ends[c] - beyond[c];
-        const double dip =
-            fmin(PLATEAU_DIP, fmax(PLATEAU_LEAST_DIP * excess, 0));
-        if (!(ends[c] - between[c] < dip))
-            return false;
-        stands_out |= excess >= PLATEAU_LEAST_EXCESS;
+        const int end = lesser(light[FIRST_END][c], light[SECOND_END][c]);
+        excess[c] = fmax(end - beyond[c], 0);
+        square += excess[c] * excess[c];
+        stands_out |= excess[c] >= PLATEAU_LEAST_EXCESS;
     }
-    return stands_out;
+    const double length = sqrt(square);
+    const double ends =
+        fmin(along(excess, light[FIRST_END]), along(excess, light[SECOND_END]));
+    double between = ends;
+    for (int i = FIRST_END + 1; i < SECOND_END; i++)
+        between = fmin(between, along(excess, light[i]));
+    const double dip = fmin(PLATEAU_DIP, PLATEAU_LEAST_DIP * length);
+    return stands_out && ends - between < dip * length;
 }
 
 int32_t plateau_on_one_thing(const uint8_t *bgr, int32_t height, int32_t width,

@@ -15,8 +15,10 @@ enum { PLATEAU_SAMPLES = 15 };
  * beyond them: of fainter lamps noise hides whether it is dark between them. */
 #define PLATEAU_LEAST_EXCESS 10.0
 
-/* Some channel is darker between two lamps by so many codes, or by so much of
- * that excess: more than noise and JPEG do to one. */
+/* It is darker between two lamps by so many codes, or by so much of that
+ * excess: more than noise and JPEG do to one. Both are lengths along that
+ * excess as a vector of (B, G, R): where lamps add nothing to the water's light
+ * a channel has only its noise to tell. */
 #define PLATEAU_DIP 6.0
 #define PLATEAU_LEAST_DIP 0.1
 

@@ -39,3 +39,19 @@ def test_a_bar_of_light_is_one_lamp() -> None:
 def test_lamps_that_do_not_clip_are_not_asked() -> None:
     seen = np.full((240, 400, 3), 240, np.uint8)
     assert not on_one_thing(seen, np.array([(100.0, 60.0), (110.0, 60.0), (300.0, 60.0)]))
+
+
+def test_noise_in_a_channel_that_the_lamps_do_not_light_is_no_gap() -> None:
+    """Flat lamps of magenta before bright cyan water: blue and green differ by noise alone."""
+    told = []
+    for seed in range(200):
+        seen = np.full((240, 400, 3), (200, 160, 40), np.uint8)
+        for x in (100, 132):
+            cv2.circle(seen, (x, 100), 6, (200, 160, 150), -1, cv2.LINE_AA)
+        noisy = seen + np.random.default_rng(seed).normal(0, 5, seen.shape)
+        seen = np.clip(noisy, 0, 255).astype(np.uint8)
+        pairs = [(x + 0.3, y) for x in (100.0, 132.0) for y in (97.0, 103.0)]
+        told.append(on_one_thing(seen, np.array(pairs)))
+        apart = np.array([(100.0, 100.0), (132.0, 100.0), *FAR])
+        assert not on_one_thing(seen, apart)
+    assert sum(told) >= 195

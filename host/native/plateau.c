@@ -51,6 +51,20 @@ static double along(const double colour[3], const int light[3])
     return colour[0] * light[0] + colour[1] * light[1] + colour[2] * light[2];
 }
 
+/* Whether some of the light between the ends is darker in a colour than both,
+ * by so much that it is no noise; length: that of the colour's vector. */
+static bool has_gap(int light[STEPS + 1][3], const double colour[3],
+                    double length)
+{
+    const double ends =
+        fmin(along(colour, light[FIRST_END]), along(colour, light[SECOND_END]));
+    double between = INFINITY;
+    for (int i = FIRST_END; i <= SECOND_END; i++)
+        between = fmin(between, along(colour, light[i]));
+    const double dip = fmin(PLATEAU_DIP, PLATEAU_LEAST_DIP * length);
+    return ends - between >= dip * length;
+}
+
 /* Whether it is as bright between two places as at both. */
 static bool is_level(const picture_t *picture, const double *from,
                      const double *to)
@@ -70,16 +84,15 @@ static bool is_level(const picture_t *picture, const double *from,
         const int end = lesser(light[FIRST_END][c], light[SECOND_END][c]);
         excess[c] = fmax(end - beyond[c], 0);
         square += excess[c] * excess[c];
-        stands_out |= excess[c] >= PLATEAU_LEAST_EXCESS;
+        if (excess[c] < PLATEAU_LEAST_EXCESS)
+            continue;
+        stands_out = true;
+        double channel[3] = {0};
+        channel[c] = excess[c];
+        if (has_gap(light, channel, excess[c]))
+            return false;
     }
-    const double length = sqrt(square);
-    const double ends =
-        fmin(along(excess, light[FIRST_END]), along(excess, light[SECOND_END]));
-    double between = ends;
-    for (int i = FIRST_END + 1; i < SECOND_END; i++)
-        between = fmin(between, along(excess, light[i]));
-    const double dip = fmin(PLATEAU_DIP, PLATEAU_LEAST_DIP * length);
-    return stands_out && ends - between < dip * length;
+    return stands_out && !has_gap(light, excess, sqrt(square));
 }
 
 int32_t plateau_on_one_thing(const uint8_t *bgr, int32_t height, int32_t width,

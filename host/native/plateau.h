@@ -16,9 +16,10 @@ enum { PLATEAU_SAMPLES = 15 };
 #define PLATEAU_LEAST_EXCESS 10.0
 
 /* It is darker between two lamps by so many codes, or by so much of that
- * excess: more than noise and JPEG do to one. Both are lengths along that
- * excess as a vector of (B, G, R): where lamps add nothing to the water's light
- * a channel has only its noise to tell. */
+ * excess: more than noise and JPEG do to one thing. It may be so along the
+ * excess as a vector of (B, G, R), or in one of the channels that stand out by
+ * the least excess: before a white bar in the lamps' own. What lamps add
+ * nothing to has only its noise to tell, and is not asked. */
 #define PLATEAU_DIP 6.0
 #define PLATEAU_LEAST_DIP 0.1
 

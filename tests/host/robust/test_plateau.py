@@ -55,3 +55,12 @@ def test_noise_in_a_channel_that_the_lamps_do_not_light_is_no_gap() -> None:
         apart = np.array([(100.0, 100.0), (132.0, 100.0), *FAR])
         assert not on_one_thing(seen, apart)
     assert sum(told) >= 195
+
+
+def test_faint_lamps_on_a_white_bar_are_two() -> None:
+    """The bar is brighter than the water in every channel, the lamps than the bar in red alone."""
+    seen = np.full((240, 400, 3), (180, 150, 60), np.uint8)
+    cv2.line(seen, (85, 60), (315, 60), (230, 190, 110), 17)
+    for x in (100, 300):
+        cv2.circle(seen, (x, 60), 5, (230, 190, 118), -1, cv2.LINE_AA)
+    assert not on_one_thing(seen, np.array([(100.0, 60.0), (300.0, 60.0)]))

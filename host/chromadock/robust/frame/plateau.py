@@ -15,7 +15,8 @@ def on_one_thing(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> bool:
     something darker between them: even where their light runs into each other and clips, their
     cores are the brightest in the channel that clips last; and before a white bar the lamps are
     brighter than it in their colour.  "Bright" is along the colour by which the markers stand out
-    from what is beyond them.  ``host/native/plateau.h`` says how much darker.
+    from what is beyond them, or in one of its channels.  ``host/native/plateau.h`` says how much
+    darker.
 
     Parameters
     ----------

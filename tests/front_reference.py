@@ -8,13 +8,16 @@ not have stand here a second time: a test that took them from what it tests woul
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
 import cv2
 import numpy as np
 
+from chromadock.robust.frame import likeness
 from chromadock.robust.frame.layout import BORDER, Layout
-from chromadock.robust.frame.likeness import coefficients
 from chromadock.robust.frame.response import Response, linear
+from chromadock.toml_file import read_toml
 
 MIN_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 112, 48
 NEIGHBOURHOOD = 0.18  # of the frame's mean side
@@ -88,7 +91,7 @@ def scales_of(frame: np.ndarray, response: Response) -> list[Scale]:
 
 @dataclass(frozen=True)
 class Peak:
-    """One peak; ``looks`` (6,): in the order of ``front.h``."""
+    """One peak; ``looks`` (22,): in the order of ``front.h``."""
 
     scale: int
     xy: np.ndarray
@@ -121,7 +124,7 @@ def peaks_of(scales: list[Scale], response: Response) -> list[list[Peak]]:
     for top in tops:
         mine = [(y, x) for k, y, x, _ in tops if k == top[0]]
         if len(found[top[0]]) < MAX_PEAKS:
-            found[top[0]].append(peak_of(top, scales[top[0]], padded[top[0]], mine, response))
+            found[top[0]].append(peak_of(top, scales, padded, mine, response))
     return found
 
 
@@ -133,39 +136,35 @@ def around(padded: np.ndarray, y: int, x: int, radius: int) -> np.ndarray:
 
 def peak_of(
     top: tuple[int, int, int, float],
-    scale: Scale,
-    padded: np.ndarray,
+    scales: list[Scale],
+    padded: list[np.ndarray],
     others: list[tuple[int, int]],
     response: Response,
 ) -> Peak:
     """All that is told of a peak."""
     k, y, x, strength = top
+    scale = scales[k]
     centre, added = scale.snr[y, x], scale.added[y, x].astype(np.float64)
-    cell = response.layout.cells[k]
-    near = around(padded, y, x, 1)
+    near = around(padded[k], y, x, 1)
     xx, yy = 2 * centre - near[0] - near[4], 2 * centre - near[2] - near[6]
     cross = (near[3] + near[7] - near[1] - near[5]) / 4
     shift = [
         np.clip((ahead - behind) / max(2 * bend, 1e-6), -0.5, 0.5)
         for ahead, behind, bend in ((near[0], near[4], xx), (near[2], near[6], yy))
     ]
-    sides = np.stack([around(padded, y, x, radius) / centre for radius in (2, 3)])
-    light = np.pad(scale.light, ((BORDER,) * 2, (BORDER,) * 2, (0, 0)), mode="edge")
-    behind = np.sort(around(light, y, x, 3), axis=0)
-    deviation = np.sqrt(np.diag(response.covariance))
-    missing = max(((behind[1] - scale.light[y, x]) / deviation).max(), 0)
-    adds = max(((scale.light[y, x] - behind[6]) / deviation).max(), 0)
-    looks = np.array(
+    xy = (np.array([x, y]) + shift + 0.5) * response.layout.cells[k] - 0.5
+    missing, channels = channels_of(scale, y, x, response)
+    flatness = 1 - 4 * (xx * yy - cross**2) / max((xx + yy) ** 2, 1e-12)
+    rings = [ring_of(padded[k], y, x, radius) for radius in (1, 2, 3)]
+    looks = np.concatenate(
         [
-            1 - 4 * (xx * yy - cross**2) / max((xx + yy) ** 2, 1e-12),
-            np.minimum(sides[:, :4], sides[:, 4:]).max(),
-            sides[1].mean(),
-            np.sort(sides[1])[-2],
-            saddle_of(scale.snr, y, x, others),
-            missing / (adds + missing + 1),
+            [flatness, saddle_of(scale.snr, y, x, others), missing],
+            *rings,
+            scales_about(padded, k, xy, response) / np.array([centre] * 4),
+            channels,
         ]
     )
-    xy = (np.array([x, y]) + shift + 0.5) * cell - 0.5
+    looks[15:19][[k + 1 >= len(scales)] * 2 + [k + 2 >= len(scales), k == 0]] = -1
     weights = response.weights[scale.best[y, x]].astype(np.float64)
     if scale.light[y, x].max() >= 0.8:
         weights = np.maximum(weights, 0)
@@ -179,6 +178,47 @@ def peak_of(
         looks,
         inside_of(xy, response),
     )
+
+
+def ring_of(padded: np.ndarray, y: int, x: int, radius: int) -> np.ndarray:
+    """Mean, deviation, and sizes of the first two Fourier coefficients of a square ring."""
+    side = np.arange(-radius, radius)
+    edge = np.full(2 * radius, radius)
+    down = np.concatenate([-edge, side, edge, -side]) + BORDER + y
+    across = np.concatenate([side, edge, -side, -edge]) + BORDER + x
+    values = padded[down, across] / padded[BORDER + y, BORDER + x]
+    waves = np.fft.fft(values) / len(values)
+    return np.array([values.mean(), values.std(), abs(waves[1]), abs(waves[2])])
+
+
+def scales_about(
+    padded: list[np.ndarray], k: int, xy: np.ndarray, response: Response
+) -> np.ndarray:
+    """(4,) signal to noise about a place at other scales; of no account where there is none."""
+
+    def about(scale: int) -> np.ndarray:
+        scale = min(max(scale, 0), len(padded) - 1)
+        last = response.layout.shapes[scale][::-1] - 1
+        cell = np.clip((xy + 0.5) / response.layout.cells[scale], 0, last).astype(int)
+        x, y = cell + BORDER
+        return padded[scale][y - 1 : y + 2, x - 1 : x + 2]
+
+    coarser = about(k + 1)
+    return np.array([coarser[1, 1], coarser.max(), about(k + 2)[1, 1], about(k - 1).max()])
+
+
+def channels_of(scale: Scale, y: int, x: int, response: Response) -> tuple[float, np.ndarray]:
+    """How much of the light is missing, and by how much each channel (3,) rises above the first
+    ring, the strongest channel first."""
+    light = np.pad(scale.light, ((BORDER,) * 2, (BORDER,) * 2, (0, 0)), mode="edge")
+    behind = np.sort(around(light, y, x, 3), axis=0)
+    deviation = np.sqrt(np.diag(response.covariance))
+    missing = max(((behind[1] - scale.light[y, x]) / deviation).max(), 0)
+    adds = max(((scale.light[y, x] - behind[6]) / deviation).max(), 0)
+    added = np.abs(scale.added[y, x]) / deviation
+    rises = (scale.light[y, x] - around(light, y, x, 1).mean(axis=0)) / deviation
+    order = np.argsort(-added, kind="stable")
+    return missing / (adds + missing + 1), rises[order] / max(added.max(), 1e-6)
 
 
 def inside_of(xy: np.ndarray, response: Response) -> float:
@@ -208,18 +248,27 @@ def chroma_of(added: np.ndarray, response: Response) -> np.ndarray:
     return np.array(off) * np.arctan2(size, along) / max(size, 1e-9)
 
 
+@cache
+def network() -> dict[str, np.ndarray]:
+    """The weights of ``likeness.toml``."""
+    table = read_toml(Path(likeness.__file__).with_name(likeness.FILE))
+    return {name: np.array(values) for name, values in table.items()}
+
+
 def likeness_of(looks: np.ndarray, snr: float, scale: int) -> float:
     """Log likelihood ratio of a lamp to clutter."""
-    with_looks, without = coefficients()
     strength = np.log(min(snr, 60.0))
-    base = np.array([1, scale == 0, scale == 2, scale >= 3, strength, strength**2])
-    seen = np.clip(looks, 0, 1)
-    both = np.concatenate([seen, np.sqrt(seen)])
-    every = np.concatenate([base, both, both * strength, both * (scale == 0)])
-    return float(every @ with_looks - base @ without)
+    base = np.array([strength, strength**2, scale == 0, scale == 2, scale >= 3, 1])
+    low, high = np.repeat([[0, -1, -2], [1, 2, 2]], [3, 16, 3], axis=1)
+    every = np.concatenate([np.clip(looks, low, high), base])
+    weights = network()
+    sums = every @ weights["hidden"]
+    odds = sums / (1 + np.abs(sums)) @ weights["of_hidden"] + every @ weights["of_inputs"]
+    ratio = np.exp(odds - base @ weights["without"])
+    return float(np.log((0.98 * ratio + 0.02) / (0.98 + 0.02 * ratio)))
 
 
 def promising_of(peaks: list[Peak]) -> list[int]:
     """Which peaks of a scale are searched for markers."""
-    score = {i: p.likeness + 2 * np.log(p.snr) for i, p in enumerate(peaks) if p.likeness >= -5}
-    return sorted(sorted(score, key=lambda i: -score[i])[:MAX_PROMISING])
+    score = [p.likeness + 2 * np.log(p.snr) for p in peaks]
+    return sorted(sorted(range(len(peaks)), key=lambda i: -score[i])[:MAX_PROMISING])

@@ -61,32 +61,61 @@
  * surface's band from the water below. */
 #define FRONT_NEIGHBOURHOOD 0.18
 
-/* What is seen about a peak: its looks, all about 0 to 1, 0 if it is a lamp. */
+/* What is seen about a peak: its looks. Rings are the cells one, two and three
+ * from it, in squares; all they say is the same for a picture that is turned by
+ * a right angle or mirrored. */
 enum {
     /* One less four times determinant over squared trace of the Hessian: 0 for
      * a round top, 1 on a ridge. */
     FRONT_FLATNESS,
-    /* The weaker of two opposite sides over the peak, where that is largest. */
-    FRONT_RIDGE,
-    /* Mean of eight places three cells off, over the peak. */
-    FRONT_HALO,
-    /* The second largest of them, over the peak. */
-    FRONT_NEIGHBOUR,
     /* The least on the way to the higher peak that is joined best, over the
      * peak; 0 if there is no higher one nearby. */
     FRONT_SADDLE,
     /* Light that is taken away in some channel, of all that is changed. */
     FRONT_MISSING,
-    FRONT_LOOKS
+    /* Of each ring, over the peak: the mean, the standard deviation, and how
+     * much it varies once about the peak (a slope) and twice (a ridge): the
+     * sizes of its first two Fourier coefficients. */
+    FRONT_RINGS,
+    /* At the next coarser scale, over the peak: the cell there, and the most of
+     * it and the eight about it; then the cell at the scale after that, and the
+     * most of nine cells at the next finer scale. -1 where there is no such
+     * scale. */
+    FRONT_COARSER = FRONT_RINGS + 12,
+    FRONT_COARSER_MOST,
+    FRONT_COARSEST,
+    FRONT_FINER_MOST,
+    /* By how much a channel's light rises above the first ring, of what the
+     * channel that adds or takes away most does, that one first: a lamp's
+     * channels rise together, or do nothing. */
+    FRONT_CHANNELS,
+    FRONT_LOOKS = FRONT_CHANNELS + 3
 };
 
 /* A lamp that outshines the noise by more looks the same. */
 #define FRONT_MOST_SNR 60.0
 
-/* Columns of the regressions that weigh the looks: of strength and scale alone,
- * and of all. */
+/* What the looks are weighed by is a network of one hidden layer, of
+ * FRONT_HIDDEN sums of FRONT_INPUTS numbers and 1, each through x / (1 + |x|);
+ * what comes out of it is a sum of these, of the inputs and 1. The inputs are
+ * the looks, and strength and scale; these, and 1, are the FRONT_BASE columns
+ * of a regression that does without looks. */
+#define FRONT_INPUTS 27
+#define FRONT_HIDDEN 16
 #define FRONT_BASE 6
-#define FRONT_DESIGN 42
+
+/* Share of lamps that look as clutter does, and of clutter that looks as lamps
+ * do, beyond what the network knows of both: there are docks, and things in the
+ * water, of kinds that it was not fitted to. */
+#define FRONT_STRANGE 0.02
+
+/* hidden: those of each input for all sums, then those of 1. */
+typedef struct {
+    float hidden[FRONT_INPUTS + 1][FRONT_HIDDEN];
+    float of_hidden[FRONT_HIDDEN];
+    float of_inputs[FRONT_INPUTS + 1];
+    float without[FRONT_BASE];
+} front_network_t;
 
 /* How one image holds a frame at all scales, the finest first, below each
  * other. About each scale is a border, so that what is around a cell is at the
@@ -149,12 +178,9 @@ int front_respond(front_frame_t *frame, const uint8_t *bgr, int pixels,
                   const float *linear, const double *signatures,
                   float unexpected);
 
-/* Finds the peaks of a frame that front_respond() has filled in.
- *
- * with_looks: FRONT_DESIGN coefficients of the regression that knows the looks.
- * without: FRONT_BASE coefficients of that which knows strength and scale. */
-void front_find(const front_frame_t *frame, const double *with_looks,
-                const double *without, front_peaks_t *peaks);
+/* Finds the peaks of a frame that front_respond() has filled in. */
+void front_find(const front_frame_t *frame, const front_network_t *network,
+                front_peaks_t *peaks);
 
 /* Two angles each, in radians, by which n lights are off white, where the
  * frame's noise is the same in all colours.  added: 3 numbers for each, blue
@@ -162,8 +188,8 @@ void front_find(const front_frame_t *frame, const double *with_looks,
 void front_chroma(const front_frame_t *frame, const double *added, int n,
                   double *chroma);
 
-/* One row of the regressions' design: FRONT_DESIGN numbers, of which the first
- * FRONT_BASE tell strength and scale alone.  looks: FRONT_LOOKS numbers. */
-void front_design(const double *looks, double snr, int scale, double *row);
+/* The network's FRONT_INPUTS inputs, of which the last FRONT_BASE - 1 tell
+ * strength and scale alone.  looks: FRONT_LOOKS numbers. */
+void front_inputs(const double *looks, double snr, int scale, float *inputs);
 
 #endif

@@ -1,4 +1,4 @@
-#include "internal/summits.h"
+#include "internal/looks.h"
 
 #include <float.h>
 #include <math.h>
@@ -7,8 +7,6 @@
 
 /* Clutter grows rarer with about this power of its strength. */
 #define WORTH 2.0
-/* Log likelihood ratio: less is kept by no lamp that matters. */
-#define LEAST_LIKENESS -5.0
 
 /* For qsort(): the strongest first, of equal ones the first of the frame. */
 static int by_strength(const void *a, const void *b)
@@ -19,61 +17,6 @@ static int by_strength(const void *a, const void *b)
     if (one->strength < other->strength)
         return 1;
     return one->at < other->at ? -1 : 1;
-}
-
-/* The second least and the second greatest of eight values. */
-static void find_seconds(const float values[8], float *second_least,
-                         float *second_greatest)
-{
-    float low = FLT_MAX, high = -FLT_MAX;
-    *second_least = FLT_MAX;
-    *second_greatest = -FLT_MAX;
-    for (int i = 0; i < 8; i++) {
-        const float value = values[i];
-        *second_least = lesser(*second_least, greater(low, value));
-        low = lesser(low, value);
-        *second_greatest = greater(*second_greatest, lesser(high, value));
-        high = greater(high, value);
-    }
-}
-
-/* See FRONT_MISSING: against all but the darkest and the brightest of the
- * places about the cell, in units of the frame's fluctuation. */
-static float missing_light(const front_frame_t *frame, int at)
-{
-    const front_layout_t *layout = &frame->layout;
-    float missing = 0, adds = 0;
-    for (int c = 0; c < 3; c++) {
-        const float *cell = channel(layout, frame->light, c) + at;
-        const float deviation = (float)sqrt(frame->covariance[4 * c]);
-        float around[8], low, high;
-        look_around(cell, layout->columns, FRONT_BORDER, around);
-        find_seconds(around, &low, &high);
-        missing = greater(missing, (low - *cell) / deviation);
-        adds = greater(adds, (*cell - high) / deviation);
-    }
-    return missing / (adds + missing + 1.0F);
-}
-
-static void look_at(const front_frame_t *frame, const summit_t *summit,
-                    double looks[FRONT_LOOKS])
-{
-    const float *cell = frame->snr + summit->at;
-    const int stride = frame->layout.columns;
-    float around[8], ridge = -FLT_MAX, halo = 0, unused, neighbour;
-    for (int radius = 2; radius <= 3; radius++) {
-        look_around(cell, stride, radius, around);
-        for (int i = 0; i < 4; i++)
-            ridge = greater(ridge, lesser(around[i], around[i + 4]));
-    }
-    for (int i = 0; i < 8; i++)
-        halo += around[i] / 8.0F;
-    find_seconds(around, &unused, &neighbour);
-    looks[FRONT_RIDGE] = (double)(ridge / summit->centre);
-    looks[FRONT_HALO] = (double)(halo / summit->centre);
-    looks[FRONT_NEIGHBOUR] = (double)(neighbour / summit->centre);
-    looks[FRONT_SADDLE] = (double)summit->saddle;
-    looks[FRONT_MISSING] = (double)missing_light(frame, summit->at);
 }
 
 /* How far along an axis the top of a parabola is, in cells, half a one at most;
@@ -121,44 +64,6 @@ void front_chroma(const front_frame_t *frame, const double *added, int n,
     }
 }
 
-void front_design(const double *looks, double snr, int scale, double *row)
-{
-    const double strength = log(fmin(snr, FRONT_MOST_SNR));
-    const double base[FRONT_BASE] = {1.0,
-                                     scale == 0 ? 1.0 : 0.0,
-                                     scale == 2 ? 1.0 : 0.0,
-                                     scale >= 3 ? 1.0 : 0.0,
-                                     strength,
-                                     strength * strength};
-    memcpy(row, base, sizeof(base));
-    double *seen = row + FRONT_BASE;
-    for (int i = 0; i < FRONT_LOOKS; i++) {
-        seen[i] = fmin(fmax(looks[i], 0.0), 1.0);
-        seen[FRONT_LOOKS + i] = sqrt(seen[i]);
-    }
-    /* At the finest scale the same number of cells is half as far, and a lamp
-     * has more about it. */
-    for (int i = 0; i < 2 * FRONT_LOOKS; i++) {
-        seen[2 * FRONT_LOOKS + i] = seen[i] * strength;
-        seen[4 * FRONT_LOOKS + i] = scale == 0 ? seen[i] : 0.0;
-    }
-}
-
-/* Natural log of how much likelier such a peak is a lamp than clutter: two
- * logistic regressions give it, for the ratio of the posterior odds with the
- * looks to those without is the ratio of the densities of the looks. */
-static double likeness_of(const double *looks, double snr, int scale,
-                          const double *with_looks, const double *without)
-{
-    double row[FRONT_DESIGN], sum = 0;
-    front_design(looks, snr, scale, row);
-    for (int i = 0; i < FRONT_DESIGN; i++)
-        sum += with_looks[i] * row[i];
-    for (int i = 0; i < FRONT_BASE; i++)
-        sum -= without[i] * row[i];
-    return sum;
-}
-
 /* Chooses the peaks that are likelier lamps than clutter as strong is common,
  * of n peaks. */
 static void choose_promising(const double *snr, const double *likeness, int n,
@@ -166,14 +71,12 @@ static void choose_promising(const double *snr, const double *likeness, int n,
 {
     double score[FRONT_MAX_PEAKS];
     for (int i = 0; i < n; i++)
-        score[i] = likeness[i] < LEAST_LIKENESS
-                       ? -DBL_MAX
-                       : likeness[i] + WORTH * log(snr[i]);
+        score[i] = likeness[i] + WORTH * log(snr[i]);
     for (int i = 0; i < n; i++) {
         int better = 0;
         for (int j = 0; j < n; j++)
             better += score[j] > score[i] || (j < i && score[j] >= score[i]);
-        promising[i] = score[i] > -DBL_MAX && better < FRONT_MAX_PROMISING;
+        promising[i] = better < FRONT_MAX_PROMISING;
     }
 }
 
@@ -193,7 +96,8 @@ static double inside_of(const front_layout_t *layout, const double xy[2])
            share_inside(xy[1], radius, height);
 }
 
-static void describe(const front_frame_t *frame, const summit_t *summit,
+static void describe(const front_frame_t *frame,
+                     const ring_t rings[LOOKS_RINGS], const summit_t *summit,
                      front_peaks_t *peaks, int k)
 {
     const front_layout_t *layout = &frame->layout;
@@ -208,19 +112,22 @@ static void describe(const front_frame_t *frame, const summit_t *summit,
     const float excess = filtered(frame->weights + 3 * best,
                                   least_weight(light[0], light[1], light[2]),
                                   added[0], added[1], added[2]);
-    double *looks = peaks->looks + k * FRONT_LOOKS;
-    look_at(frame, summit, looks);
-    measure_top(frame, summit, peaks->xy + 2 * k, &looks[FRONT_FLATNESS]);
+    double flatness;
+    measure_top(frame, summit, peaks->xy + 2 * k, &flatness);
+    looks_at(frame, rings, summit, peaks->xy + 2 * k, flatness,
+             peaks->looks + k * FRONT_LOOKS);
     peaks->inside[k] = inside_of(layout, peaks->xy + 2 * k);
     front_chroma(frame, exact, 1, peaks->chroma + 2 * k);
     peaks->snr[k] = (double)summit->strength;
     peaks->noise[k] = (double)(greater(excess, 1e-6F) / summit->centre);
 }
 
-void front_find(const front_frame_t *frame, const double *with_looks,
-                const double *without, front_peaks_t *peaks)
+void front_find(const front_frame_t *frame, const front_network_t *network,
+                front_peaks_t *peaks)
 {
     summit_t summits[2 * MAX_SUMMITS];
+    ring_t rings[LOOKS_RINGS];
+    looks_prepare(frame->layout.columns, rings);
     const int n = summits_find(frame, summits);
     qsort(summits, (size_t)n, sizeof(summit_t), by_strength);
     memset(peaks->count, 0, sizeof(peaks->count));
@@ -229,10 +136,9 @@ void front_find(const front_frame_t *frame, const double *with_looks,
         if (peaks->count[scale] == FRONT_MAX_PEAKS)
             continue;
         const int k = FRONT_MAX_PEAKS * scale + peaks->count[scale]++;
-        describe(frame, &summits[i], peaks, k);
-        peaks->likeness[k] =
-            likeness_of(peaks->looks + k * FRONT_LOOKS, peaks->snr[k], scale,
-                        with_looks, without);
+        describe(frame, rings, &summits[i], peaks, k);
+        peaks->likeness[k] = looks_likeness(
+            network, peaks->looks + k * FRONT_LOOKS, peaks->snr[k], scale);
     }
     for (int scale = 0; scale < frame->layout.scales; scale++) {
         const int first = FRONT_MAX_PEAKS * scale;

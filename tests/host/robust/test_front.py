@@ -8,11 +8,18 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from front_reference import covariance_of, lights_of, peaks_of, promising_of, scales_of
+from front_reference import (
+    covariance_of,
+    lights_of,
+    network,
+    peaks_of,
+    promising_of,
+    scales_of,
+)
 
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.method import HUE_RANGE
-from chromadock.robust.frame.likeness import coefficients, design
+from chromadock.robust.frame.likeness import inputs
 from chromadock.robust.frame.peaks import find_peaks
 from chromadock.robust.frame.response import HUES, linear, respond
 from chromadock.variety import Backdrops, Half, draw, render
@@ -72,9 +79,9 @@ def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
         assert peaks.noise[found_too] == pytest.approx(np.array([p.noise for p in same]), rel=1e-3)
         assert np.abs(peaks.chroma[found_too] - [p.chroma for p in same]).max() < 1e-3
         assert peaks.inside[found_too] == pytest.approx([p.inside for p in same], abs=2e-3)
-        # The way to a higher peak may lead over either of two cells; looks count from 0 to 1.
-        own, theirs = np.clip(peaks.looks[found_too], 0, 1), np.clip([p.looks for p in same], 0, 1)
-        looks = np.abs(own - theirs).max(axis=1)
+        # The way to a higher peak may lead over either of two cells; looks count from -2 to 2.
+        own, theirs = peaks.looks[found_too], np.array([p.looks for p in same])
+        looks = np.abs(np.clip(own, -2, 2) - np.clip(theirs, -2, 2)).max(axis=1)
         assert np.mean(looks < 4e-3) >= 0.98
         likeness = np.abs(peaks.likeness[found_too] - [p.likeness for p in same])
         assert np.mean(likeness < 4e-2) >= 0.98
@@ -117,13 +124,18 @@ def test_photographs_give_what_the_reference_gives(size: tuple[int, int]) -> Non
     held_against_the_reference(cv2.resize(cv2.imread(str(path)), size), 900)
 
 
-def test_the_design_of_the_regressions_is_what_the_likeness_is_made_of() -> None:
-    with_looks, without = coefficients()
+def test_the_inputs_of_the_network_are_what_the_likeness_is_made_of() -> None:
+    weights = network()
     found = find_peaks(respond(drawn(1), 0, 512.0))
     for scale, peaks in enumerate(found.values()):
-        base, seen = design(peaks.looks, peaks.snr, np.full(len(peaks.snr), scale))
-        odds = np.concatenate([base, seen], axis=1) @ with_looks - base @ without
-        assert odds == pytest.approx(peaks.likeness)
+        told = inputs(peaks.looks, peaks.snr, np.full(len(peaks.snr), scale))
+        every = np.column_stack([told, np.ones(len(told))])
+        sums = every @ weights["hidden"]
+        odds = sums / (1 + np.abs(sums)) @ weights["of_hidden"] + every @ weights["of_inputs"]
+        without = every[:, -len(weights["without"]) :] @ weights["without"]
+        ratio = np.exp(odds - without)
+        known = np.log((0.98 * ratio + 0.02) / (0.98 + 0.02 * ratio))
+        assert known == pytest.approx(peaks.likeness, abs=1e-3)
 
 
 def test_frames_may_be_worked_on_at_once() -> None:

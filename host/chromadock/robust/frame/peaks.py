@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.frame.likeness import LOOKS, coefficients
+from chromadock.robust.frame.likeness import LOOKS, network
 from chromadock.robust.frame.native import ffi, lib, pointer
 from chromadock.robust.frame.response import Response
 
@@ -56,7 +56,7 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
     promising = np.empty(places, np.uint8)
     arrays = xy, snr, noise, chroma, looks, likeness, inside, promising
     native = ffi.new("front_peaks_t *", ([], *map(pointer, arrays)))
-    lib.front_find(response.native, *map(pointer, coefficients()), native)
+    lib.front_find(response.native, network(), native)
     found = {}
     for scale, cell in enumerate(response.layout.cells):
         first = MAX_PEAKS * scale

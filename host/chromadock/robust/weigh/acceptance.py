@@ -20,7 +20,7 @@ all the same has mostly less than this.  What comes of both on photographs is in
 
 LEAST_EVIDENCE = float(-np.log(FALSE_ALARM_RATE))
 
-LEAST_FOR_A_TRACK = float(2.5 * np.log(10))
+LEAST_FOR_A_TRACK = float(3 * np.log(10))
 """Of markers that a track looks for, where it has the dock or with one of them out: no pose of a
 frame by itself is told with so little, and a lock takes more from several frames."""
 

@@ -28,11 +28,11 @@ LOCK_SHARE = 0.5
 and not in the next (the likest of the real photographs in a quarter of them), a dock in nearly all
 until it is about to be out of reach."""
 
-PATIENT_EVIDENCE = 2.5
+PATIENT_EVIDENCE = 3.0
 PATIENT_FRAMES = 10
 PATIENT_SPAN_S = 2.0
 """Less evidence of the best frame will do, or frames with a marker out, where so many agree over
-so long: three pictures in a thousand of clutter have it, and few of those again and again where a
+so long: three pictures in a thousand of clutter had 2.5 when last counted, and few of those again and again where a
 moving vehicle must see it.  Over that time vehicle and dock sway: it shows which marker is out."""
 
 GIVEN_UP_S = 0.5

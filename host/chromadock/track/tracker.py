@@ -24,7 +24,7 @@ from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.sight import Sight
 from chromadock.track.states import MOST_DOUBT, MOST_DOUBT_KEPT, TRACKING_S
 
-KEEP_EVIDENCE = 2.5
+KEEP_EVIDENCE = 3.0
 """Decades, of markers where the track has them: specks there would draw it away, and a frame
 missed costs nothing."""
 

@@ -26,8 +26,8 @@ void looks_prepare(int stride, ring_t rings[LOOKS_RINGS])
 }
 
 /* Size of a Fourier coefficient of a ring's values. */
-static float coefficient(const float *values, const float wave[2][24],
-                         int count)
+static float coefficient(const float *values,
+                         const float wave[2][LOOKS_LARGEST_RING], int count)
 {
     float cosine = 0, sine = 0;
     for (int i = 0; i < count; i++) {
@@ -40,7 +40,7 @@ static float coefficient(const float *values, const float wave[2][24],
 static void look_at_ring(const float *cell, const ring_t *ring, float centre,
                          double looks[4])
 {
-    float values[8 * LOOKS_RINGS], sum = 0, square = 0;
+    float values[LOOKS_LARGEST_RING], sum = 0, square = 0;
     for (int i = 0; i < ring->count; i++) {
         values[i] = cell[ring->off[i]] / centre;
         sum += values[i];

@@ -32,8 +32,9 @@ PATIENT_EVIDENCE = 3.0
 PATIENT_FRAMES = 10
 PATIENT_SPAN_S = 2.0
 """Less evidence of the best frame will do, or frames with a marker out, where so many agree over
-so long: three pictures in a thousand of clutter had 2.5 when last counted, and few of those again and again where a
-moving vehicle must see it.  Over that time vehicle and dock sway: it shows which marker is out."""
+so long: three pictures in a thousand of clutter had 2.5 decades when last counted, and few of those
+have as much again and again where a moving vehicle must see it.  Over that time vehicle and dock
+sway: it shows which marker is out."""
 
 GIVEN_UP_S = 0.5
 """A candidate not seen for so long is dropped: a better one begins anew."""

@@ -4,14 +4,14 @@
 
 #include "summits.h"
 
-enum { LOOKS_RINGS = 3 };
+enum { LOOKS_RINGS = 3, LOOKS_LARGEST_RING = 8 * LOOKS_RINGS };
 
 /* The cells of one ring about a cell: how far in memory each is, and the cosine
  * and sine of one and of two turns. */
 typedef struct {
     int count;
-    int off[8 * LOOKS_RINGS];
-    float once[2][8 * LOOKS_RINGS], twice[2][8 * LOOKS_RINGS];
+    int off[LOOKS_LARGEST_RING];
+    float once[2][LOOKS_LARGEST_RING], twice[2][LOOKS_LARGEST_RING];
 } ring_t;
 
 /* Fills in the rings of an image whose rows begin `stride` numbers from each

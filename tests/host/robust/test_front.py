@@ -17,6 +17,7 @@ from front_reference import (
     scales_of,
 )
 
+from chromadock._native import lib
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.method import HUE_RANGE
 from chromadock.robust.frame.likeness import inputs
@@ -136,6 +137,24 @@ def test_the_inputs_of_the_network_are_what_the_likeness_is_made_of() -> None:
         ratio = np.exp(odds - without)
         known = np.log((0.98 * ratio + 0.02) / (0.98 + 0.02 * ratio))
         assert known == pytest.approx(peaks.likeness, abs=1e-3)
+
+
+def test_a_mirrored_picture_has_peaks_of_the_same_looks() -> None:
+    frame = noise(640, 480)
+    seen, mirrored = (find_peaks(respond(f, 40, 512.0)) for f in (frame, frame[:, ::-1].copy()))
+    for cell, peaks in seen.items():
+        turned = [639, 0] + mirrored[cell].xy * [-1, 1]
+        if len(peaks.xy) == 0:
+            assert len(turned) == 0
+            continue
+        # Of peaks as strong as one another another one may be the last of a full list.
+        apart = np.linalg.norm(peaks.xy[:, None] - turned, axis=2)
+        same = apart.min(axis=1) < 0.01
+        assert same.mean() > 0.95
+        theirs = mirrored[cell].looks[apart.argmin(axis=1)]
+        # The way to a higher peak is rounded to cells, to the other side where it is mirrored.
+        others = np.delete(np.abs(peaks.looks - theirs), lib.FRONT_SADDLE, axis=1)
+        assert others[same].max() < 1e-3
 
 
 def test_frames_may_be_worked_on_at_once() -> None:

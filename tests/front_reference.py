@@ -260,12 +260,16 @@ def likeness_of(looks: np.ndarray, snr: float, scale: int) -> float:
     strength = np.log(min(snr, 60.0))
     base = np.array([strength, strength**2, scale == 0, scale == 2, scale >= 3, 1])
     low, high = np.repeat([[0, -1, -2], [1, 2, 2]], [3, 16, 3], axis=1)
-    every = np.concatenate([np.clip(looks, low, high), base])
+    return float(weighed(np.concatenate([np.clip(looks, low, high), base])))
+
+
+def weighed(every: np.ndarray) -> np.ndarray:
+    """Log likelihood ratios of (..., 28) inputs and 1."""
     weights = network()
     sums = every @ weights["hidden"]
     odds = sums / (1 + np.abs(sums)) @ weights["of_hidden"] + every @ weights["of_inputs"]
-    ratio = np.exp(odds - base @ weights["without"])
-    return float(np.log((0.98 * ratio + 0.02) / (0.98 + 0.02 * ratio)))
+    ratio = np.exp(odds - every[..., -len(weights["without"]) :] @ weights["without"])
+    return np.asarray(np.log((0.98 * ratio + 0.02) / (0.98 + 0.02 * ratio)))
 
 
 def promising_of(peaks: list[Peak]) -> list[int]:

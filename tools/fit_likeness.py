@@ -20,7 +20,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from network import Network
+from network import RIDGE, Network
 from step import ROOT
 
 from chromadock._native import lib
@@ -37,8 +37,6 @@ from chromadock.variety.factors import variety
 
 BACKGROUNDS = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
 TARGET = Path(likeness.__file__).with_name(FILE)
-RIDGE = 1.0
-"""Added to the curvature of each coefficient without looks."""
 LAMPS_CELLS, CLUTTER_CELLS = 0.8, 4.0
 """From a marker's true place: what is nearer is the marker, what is farther clutter."""
 FOCAL_PX = 554.0

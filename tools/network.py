@@ -11,11 +11,14 @@ from chromadock._native import lib
 
 # Where `tools/setup bench` puts scipy; .venv's own packages come first.
 sys.path.append(str(ROOT / "build" / "bench"))
-from scipy.optimize import minimize
+try:
+    from scipy.optimize import minimize
+except ImportError as error:
+    sys.exit(f"{error}: tools/setup bench installs it")
 
 RIDGE = 1.0
-"""Of all squared weights, in units of each input's standard deviation: none runs away where classes
-part."""
+"""Of all squared weights, of a network in units of each input's standard deviation: none runs away
+where classes part."""
 STEPS = 800
 """Of L-BFGS, at most."""
 

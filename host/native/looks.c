@@ -4,6 +4,9 @@
 
 #define TURN 6.283185307179586
 
+_Static_assert(FRONT_INPUTS == FRONT_LOOKS + FRONT_BASE - 1,
+               "inputs are the looks, and the base without its 1");
+
 void looks_prepare(int stride, ring_t rings[LOOKS_RINGS])
 {
     for (int radius = 1; radius <= LOOKS_RINGS; radius++) {

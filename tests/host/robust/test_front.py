@@ -11,10 +11,10 @@ import pytest
 from front_reference import (
     covariance_of,
     lights_of,
-    network,
     peaks_of,
     promising_of,
     scales_of,
+    weighed,
 )
 
 from chromadock._native import lib
@@ -126,17 +126,11 @@ def test_photographs_give_what_the_reference_gives(size: tuple[int, int]) -> Non
 
 
 def test_the_inputs_of_the_network_are_what_the_likeness_is_made_of() -> None:
-    weights = network()
     found = find_peaks(respond(drawn(1), 0, 512.0))
     for scale, peaks in enumerate(found.values()):
         told = inputs(peaks.looks, peaks.snr, np.full(len(peaks.snr), scale))
         every = np.column_stack([told, np.ones(len(told))])
-        sums = every @ weights["hidden"]
-        odds = sums / (1 + np.abs(sums)) @ weights["of_hidden"] + every @ weights["of_inputs"]
-        without = every[:, -len(weights["without"]) :] @ weights["without"]
-        ratio = np.exp(odds - without)
-        known = np.log((0.98 * ratio + 0.02) / (0.98 + 0.02 * ratio))
-        assert known == pytest.approx(peaks.likeness, abs=1e-3)
+        assert weighed(every) == pytest.approx(peaks.likeness, abs=1e-3)
 
 
 def test_a_mirrored_picture_has_peaks_of_the_same_looks() -> None:

@@ -22,11 +22,15 @@ from chromadock.track.memory import Locked, Memory
 from chromadock.track.motion import turning_of
 from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.sight import Sight
-from chromadock.track.states import MOST_DOUBT, MOST_DOUBT_KEPT, TRACKING_S
+from chromadock.track.states import MOST_DOUBT, MOST_DOUBT_KEPT, MOST_DOUBT_UNSEEN, TRACKING_S
 
 KEEP_EVIDENCE = 3.0
 """Decades, of markers where the track has them: specks there would draw it away, and a frame
 missed costs nothing."""
+
+LEFT_OF_EVIDENCE = 0.5
+"""Of the decades that a dock had, of what is taken for it where its place is no longer known: a
+look about an expectation so vague is one everywhere, and finds what stands a little like a dock."""
 
 CORRELATION_S = 0.2
 """Frames closer than this share their errors, by the same pixels under a marker and the same
@@ -177,9 +181,14 @@ class Tracker:
         if predicted is None:
             return None
         locked = predicted.locked
-        unsure = time_s - locked.measured_s > TRACKING_S or (sight.whole and not locked.whole)
+        hidden = time_s - locked.measured_s > TRACKING_S
+        unsure = hidden or (sight.whole and not locked.whole)
         if plan.everywhere and unsure and evidence < LOCK_EVIDENCE:
             return None
+        if hidden and evidence < max(LOCK_EVIDENCE, LEFT_OF_EVIDENCE * locked.evidence):
+            expected = predicted.bank(predicted.swift).about(self._judged)
+            if expected.doubt > MOST_DOUBT_UNSEEN:
+                return None
         if evidence < locked.evidence:
             first = predicted.bank(0.0).hypotheses[0].state
             if sight.misnamed(self._dock, first.R, first.t):
@@ -270,7 +279,11 @@ def _proposed(
         after = Candidate.of(sight, evidence, time_s)
         candidates = [*candidates, after][-MAX_CANDIDATES:]
     locked = memory.locked
-    rival = locked is not None and time_s - locked.measured_s <= TRACKING_S
+    rival = (
+        locked is not None
+        and time_s - locked.measured_s <= TRACKING_S
+        and after.evidence < locked.evidence + LOCK_EVIDENCE
+    )
     if not after.locked(rival):
         return replace(memory, candidates=tuple(candidates))
     sure = after.bank.about(judged).doubt <= MOST_DOUBT

@@ -205,6 +205,40 @@ def test_a_wrong_lock_is_left_for_a_dock_that_stands_out_more(run: Run) -> None:
     assert all(t.state == "tracking" for t in tracks)
 
 
+def test_a_wrong_lock_is_left_at_once_for_what_is_a_dock_beyond_comparison(run: Run) -> None:
+    ghost, rng = elsewhere(GHOST), np.random.default_rng(3)
+    run.frames(1.0, ghost)
+
+    def both(time_s: float, plan: Plan) -> Found:
+        strong = found(approach(time_s), rng, 3 * LOCK_EVIDENCE)
+        return strong if plan.everywhere else ghost(time_s, plan)
+
+    tracks = run.frames(FULL_SEARCH_S + 2 * LOCK_FRAMES / HZ, both)
+    assert tracks[-1].pose is not None
+    assert tracks[-1].pose.t == pytest.approx(approach(run.time_s - 1 / HZ)[1], abs=0.15)
+
+
+def test_what_stands_a_little_like_a_dock_that_went_dark_is_not_taken_for_it(run: Run) -> None:
+    """Half as far again: within reach of a vehicle that has manoeuvred since."""
+    rng = np.random.default_rng(4)
+    run.frames(2.0, lambda time_s, plan: found(approach(time_s), rng, 4 * LOCK_EVIDENCE))
+    run.frames(KEPT_S - 3 / HZ, nothing)
+    R, t = approach(run.time_s)
+
+    def about(time_s: float, plan: Plan) -> Found:
+        return NOTHING if plan.everywhere else found((R, 1.5 * t), rng, LOCK_EVIDENCE + 1)
+
+    assert {track.pose for track in run.frames(1.0, about)} == {None}
+
+
+def test_a_dock_that_was_dark_is_followed_again_from_its_first_look(run: Run) -> None:
+    rng = np.random.default_rng(5)
+    bright: Seen = lambda time_s, plan: found(approach(time_s), rng, 4 * LOCK_EVIDENCE)  # noqa: E731
+    run.frames(2.0, bright)
+    run.frames(KEPT_S - 3 / HZ, nothing)
+    assert run.frame(bright).state == "tracking"
+
+
 def test_a_right_lock_is_kept_beside_something_that_stands_out_now_and_then(run: Run) -> None:
     run.frames(2.0, run.dock)
     ghost, looks = elsewhere(GHOST), 0

@@ -1,13 +1,16 @@
 """Fits what a lamp looks like beside clutter: host/chromadock/robust/frame/likeness.toml.
 
-.venv/bin/python tools/fit_likeness.py [--scenes N] [--looks N] [--photographs FOLDER ...]
+.venv/bin/python tools/fit_likeness.py [--scenes N] [--simulated N] [--looks N]
+    [--photographs FOLDER ...]
 
 scipy, which it needs, is installed by ``tools/setup bench``.
 
 Peaks of drawn scenes of the develop half that are a marker's are lamps; those far from every
 marker, of scenes without other lamps, and those of photographs, as they are and coded as JPEG
-once more, are clutter.  Each distance counts as much as the others, or near docks, which have
-every one of their lamps among the peaks, would tell what far ones look like.
+once more, are clutter.  So are those of the simulator's frames, in the waters and the light of the
+experiments, with waves and noise of their own: lamps that are composited into photographs alone
+tell too little of what others may look like.  Each distance counts as much as the others, or near
+docks, which have every one of their lamps among the peaks, would tell what far ones look like.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ from __future__ import annotations
 import argparse
 import sys
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
@@ -26,16 +29,27 @@ from step import ROOT
 from chromadock._native import lib
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.vehicle import vehicle_background
+from chromadock.evaluate.experiment import read_experiment
+from chromadock.evaluate.runs import Run, runs_of
 from chromadock.method import HUE_RANGE
 from chromadock.robust.frame import likeness
 from chromadock.robust.frame.likeness import FILE, inputs
-from chromadock.robust.frame.peaks import find_peaks
+from chromadock.robust.frame.peaks import Peaks, find_peaks
 from chromadock.robust.frame.response import respond
 from chromadock.robust.weigh.shape import focal_px
+from chromadock.sim.simulation import Simulation
 from chromadock.variety import Backdrops, Half, draw, render
 from chromadock.variety.factors import variety
 
 BACKGROUNDS = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
+EXPERIMENTS = [
+    ROOT / "experiments" / f"{name}.toml"
+    for name in ("mapping_clear", "mapping_turbid", "conditions", "daylight", "exposure")
+]
+SIMULATED_SEED = 1001
+"""Of waves, sway and noise: none of an experiment's own."""
+SIMULATED_FAR_M = 4.0
+"""Simulated frames are of two kinds, or their near docks would count for most."""
 TARGET = Path(likeness.__file__).with_name(FILE)
 LAMPS_CELLS, CLUTTER_CELLS = 0.8, 4.0
 """From a marker's true place: what is nearer is the marker, what is farther clutter."""
@@ -65,13 +79,43 @@ def scene_sample(index: int, backdrops: Backdrops) -> Sample:
     hue = marker_hue(vehicle_background(frame), scene.mapping)
     every = find_peaks(respond(frame, hue, focal_px(truth.camera)))
     others = {thing.kind for thing in scene.things} & {"lamp"}
+    return _sample(every, truth.pixels, distance, clutter=not others)
+
+
+def _sample(every: dict[int, Peaks], pixels: np.ndarray, kind: str, clutter: bool = True) -> Sample:
+    """Peaks of a frame with (n, 2) markers; ``clutter``: whether the others are."""
     parts = []
     for scale, (cell, peaks) in enumerate(every.items()):
-        away = np.linalg.norm(peaks.xy[:, None] - truth.pixels, axis=2).min(axis=1, initial=np.inf)
+        away = np.linalg.norm(peaks.xy[:, None] - pixels, axis=2).min(axis=1, initial=np.inf)
         lamp = away < LAMPS_CELLS * cell
-        kept = lamp | ((away > CLUTTER_CELLS * cell) & (not others))
+        kept = lamp | ((away > CLUTTER_CELLS * cell) & clutter)
         parts.append((peaks.looks[kept], peaks.snr[kept], np.full(kept.sum(), scale), lamp[kept]))
-    return Sample(*(np.concatenate(values) for values in zip(*parts, strict=True)), distance)
+    return Sample(*(np.concatenate(values) for values in zip(*parts, strict=True)), kind)
+
+
+def simulated_runs(frames: int) -> list[Run]:
+    """About so many frames of the experiments' waters and light, with a seed of their own."""
+    runs = []
+    for path in EXPERIMENTS:
+        experiment = read_experiment(path).model_copy(update={"seed": SIMULATED_SEED})
+        runs += runs_of(experiment, path)
+    each = max(1, round(frames / len(runs)))
+    return [replace(run, frames=min(each, run.frames)) for run in runs]
+
+
+def simulated_samples(run: Run) -> list[Sample]:
+    """Peaks of the vehicle's frames of a run."""
+    cv2.setNumThreads(1)
+    simulation, samples = Simulation(run.scene, run.mapping), []
+    for step in simulation.steps(run.time_s(frame) for frame in range(run.frames)):
+        frame = simulation.frame(step)
+        hue = marker_hue(vehicle_background(frame.image_bgr), run.mapping)
+        focal = focal_px(run.scene.vehicle_camera.model)
+        every = find_peaks(respond(frame.image_bgr, hue, focal))
+        seen = frame.truth.pixels()[[marker.in_view for marker in frame.truth.markers]]
+        far = "far" if run.distance_m >= SIMULATED_FAR_M else "near"
+        samples.append(_sample(every, seen, f"simulated {far}"))
+    return samples
 
 
 def photograph_sample(path: Path, seed: int) -> Sample:
@@ -111,6 +155,7 @@ def main() -> int:
     """Fit and write the table; exit status 3 without photographs."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--scenes", type=int, default=3200)
+    parser.add_argument("--simulated", type=int, default=1000, help="frames, about")
     parser.add_argument("--looks", type=int, default=800, help="photographs, at most")
     parser.add_argument("--photographs", nargs="*", type=Path, default=(), metavar="FOLDER")
     parser.add_argument("--jobs", type=int, default=2)
@@ -124,7 +169,8 @@ def main() -> int:
     with ProcessPoolExecutor(args.jobs) as pool:
         jobs = [pool.submit(scene_sample, i, backdrops) for i in range(args.scenes)]
         jobs += [pool.submit(photograph_sample, files[k], int(k)) for k in chosen]
-        samples = [job.result() for job in jobs]
+        runs = [pool.submit(simulated_samples, run) for run in simulated_runs(args.simulated)]
+        samples = [job.result() for job in jobs] + [s for run in runs for s in run.result()]
     looks, snr, scale, lamp = (
         np.concatenate([getattr(s, name) for s in samples])
         for name in ("looks", "snr", "scale", "lamp")

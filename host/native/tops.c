@@ -7,6 +7,14 @@
 /* Steps across the window that other tops are looked for in. */
 enum { WINDOW = 2 * TOPS_FARTHEST + 1 };
 
+/* Rounds of moving to the centroid about a centre, and the step that ends them:
+ * a fiftieth of the steps that light is sampled in. */
+enum { CORE_ROUNDS = 4 };
+#define CORE_SETTLED 0.02
+/* Half the width of the ring on which the way to the next lamp is looked at:
+ * no step between its two sides is missed. */
+#define HALF_RING 0.75
+
 /* A top of the light as smoothed to a width: x, y in steps; error: standard,
  * for noise with a slope of 1; sharpness: bend over height. */
 typedef struct {
@@ -193,4 +201,65 @@ int32_t tops_find(const tops_patch_t *patch, tops_top_t *tops)
             tops[found++] = top_of(patch, &other, 0);
     }
     return found;
+}
+
+/* The brightest light within radius of a centre, and on the ring about it. */
+static void look_at_core(const float *light, int32_t side, double radius,
+                         double x, double y, double *top, double *ring)
+{
+    const int32_t middle = side / 2;
+    *top = *ring = -INFINITY;
+    for (int32_t row = 0; row < side; row++)
+        for (int32_t column = 0; column < side; column++) {
+            const double value = light[(ptrdiff_t)row * side + column];
+            const double far = apart(column - middle, row - middle, x, y);
+            if (far < radius)
+                *top = fmax(*top, value);
+            if (fabs(far - radius) < HALF_RING)
+                *ring = fmax(*ring, value);
+        }
+}
+
+/* The centroid of what is above a level within radius of a centre; whether
+ * anything is. */
+static bool centroid(const float *light, int32_t side, double radius,
+                     double level, double *x, double *y)
+{
+    const int32_t middle = side / 2;
+    double sum = 0, across = 0, down = 0;
+    for (int32_t row = 0; row < side; row++)
+        for (int32_t column = 0; column < side; column++) {
+            const double above = light[(ptrdiff_t)row * side + column] - level;
+            if (!(above > 0) ||
+                !(apart(column - middle, row - middle, *x, *y) < radius))
+                continue;
+            sum += above;
+            across += above * (column - middle);
+            down += above * (row - middle);
+        }
+    if (!(sum > 0))
+        return false;
+    *x = across / sum;
+    *y = down / sum;
+    return true;
+}
+
+int32_t tops_core(const float *light, int32_t side, double radius, double *x,
+                  double *y)
+{
+    double at_x = *x, at_y = *y;
+    radius = fmin(radius, side / 2);
+    for (int32_t round = 0; round < CORE_ROUNDS; round++) {
+        const double from_x = at_x, from_y = at_y;
+        double top, ring;
+        look_at_core(light, side, radius, at_x, at_y, &top, &ring);
+        const double level = ring + TOPS_CORE_LEVEL * (top - ring);
+        if (!centroid(light, side, radius, level, &at_x, &at_y))
+            return -1;
+        if (apart(at_x, at_y, from_x, from_y) < CORE_SETTLED)
+            break;
+    }
+    *x = at_x;
+    *y = at_y;
+    return 0;
 }

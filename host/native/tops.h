@@ -82,4 +82,15 @@ typedef struct {
  * as many as are returned, TOPS_MOST at most. */
 int32_t tops_find(const tops_patch_t *patch, tops_top_t *tops);
 
+/* Of the way from the brightest place half way to the next lamp up to an
+ * overexposed lamp's own brightest: light above this is its core. */
+#define TOPS_CORE_LEVEL 0.3
+
+/* The centre of an overexposed lamp's core, found from x, y on, steps from the
+ * middle of side x side steps of light: the centroid of the light within radius
+ * of it that is above TOPS_CORE_LEVEL. Returns -1, and leaves x and y, where
+ * nothing is: the lamp is one with its neighbour. */
+int32_t tops_core(const float *light, int32_t side, double radius, double *x,
+                  double *y);
+
 #endif

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from chromadock._native import ffi, lib
 from chromadock.robust.frame.refine import _tops, refined
 from chromadock.robust.frame.response import Response, respond
 
@@ -68,6 +69,56 @@ def test_overexposed_lamps_close_to_each_other_do_not_drive_each_other_apart(
         top, bottom = (tops.xy[0] for tops in found)
         spread.append(bottom[1] - top[1] - apart_px)
     assert abs(np.mean(spread)) < 0.03 * apart_px
+
+
+def glow(places: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Green lamps at night, much too bright: green clips from one to the next, blue nearly, and red
+    over their cores alone."""
+    y, x = np.mgrid[0:160, 0:240].astype(float)
+    light = np.full((160, 240, 3), 0.002)
+    for px, py in places:
+        away = np.hypot(x - px, y - py)
+        core = np.exp(-0.5 * (away / 5.0) ** 2)
+        halo = np.exp(-away / 14)
+        light += np.array([2.0, 8.0, 3.0]) * core[..., None]
+        light += np.array([0.4, 1.6, 0.03]) * halo[..., None]
+    encoded = 255 * np.clip(light, 0, 1) ** (1 / 2.2) + rng.normal(0, 2, light.shape)
+    return np.clip(np.rint(encoded), 0, 255).astype(np.uint8)
+
+
+@pytest.mark.parametrize("cell", [4, 8])
+def test_channels_that_clip_from_one_lamp_to_the_next_do_not_drive_them_apart(cell: int) -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(6):
+        places = np.array([(120.0, 60.0), (120.0, 90.0)]) + rng.uniform(-1, 1, 2)
+        frame = glow(places, rng)
+        about = places + rng.uniform(-cell / 3, cell / 3, (2, 2))
+        found = refined(frame, about, cell, seen(frame), np.ones(2))
+        assert found is not None
+        off = np.array([tops.xy[0] for tops in found]) - places
+        assert np.abs(off).max() < 0.6
+
+
+def test_overexposed_lamps_that_have_become_one_have_no_places() -> None:
+    rng = np.random.default_rng(8)
+    light = np.zeros((160, 240, 3))
+    light[40:110, 100:140] = 1.0
+    frame = np.rint(255 * light).astype(np.uint8)
+    about = np.array([(120.0, 60.0), (120.0, 90.0)]) + rng.uniform(-3, 3, (2, 2))
+    assert refined(frame, about, 4, seen(frame), np.ones(2)) is None
+
+
+@pytest.mark.parametrize("off", [(0.0, 0.0), (1.3, -0.6), (-2.2, 2.2)])
+def test_a_cores_centre_is_found_from_beside_it(off: tuple[float, float]) -> None:
+    y, x = np.mgrid[-15:16, -15:16].astype(float)
+    away = np.hypot(x - off[0], y - off[1])
+    light = np.minimum(1.0, 4 * np.exp(-0.5 * (away / 3.0) ** 2)).astype(np.float32)
+    at_x, at_y = ffi.new("double *", 0.0), ffi.new("double *", 0.0)
+    assert lib.tops_core(ffi.from_buffer("float[]", light), 31, 10.0, at_x, at_y) == 0
+    assert (at_x[0], at_y[0]) == pytest.approx(off, abs=0.05)
+    dark = np.zeros_like(light)
+    assert lib.tops_core(ffi.from_buffer("float[]", dark), 31, 10.0, at_x, at_y) == -1
+    assert (at_x[0], at_y[0]) == pytest.approx(off, abs=0.05)
 
 
 def test_neighbours_do_not_melt_into_one() -> None:

@@ -29,6 +29,13 @@ def clipped_at(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> NDArray
     return np.asarray(frame_bgr[row, column].max(axis=1) >= CLIPPED)
 
 
+def have_cores(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether lamps at (n, 2) pixels are overexposed over 3 x 3 pixels there, or more."""
+    around = np.stack(np.meshgrid((-1, 0, 1), (-1, 0, 1)), axis=-1).reshape(9, 1, 2)
+    clipped = clipped_at(frame_bgr, (xy + around).reshape(-1, 2)).reshape(9, -1)
+    return np.asarray(clipped.all(axis=0))
+
+
 def stops_over(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> float:
     """By how many stops the exposure should be shorter for lamps at ``xy`` not to clip.
 

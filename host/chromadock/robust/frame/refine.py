@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from chromadock._native import ffi, lib
 from chromadock.native import doubles
 from chromadock.robust.frame.layout import FINE_CELL
-from chromadock.robust.frame.overexposure import clipped_at
+from chromadock.robust.frame.overexposure import clipped_at, have_cores
 from chromadock.robust.frame.response import Response, linear
 
 WIDTHS = tuple(1.4 * 2 ** (k / 2) for k in range(7))
@@ -39,6 +39,11 @@ CUT_OFF = 1.5
 SHIFT_PER_SPACING = 1 / 3
 MAX_SHIFT: int = lib.TOPS_FARTHEST
 """A lamp's top is looked for within this of where it was supposed: steps."""
+
+CORE_ERROR_PX = 0.1
+CORE_ERROR_SHARE = 0.3
+"""Standard error of the centroid of an overexposed lamp's core: pixels, and of how far it is from
+the top of the smoothed light, which neighbours and bars pull more."""
 
 INFLATION = 1.05
 """True errors are so much larger than independent noise makes them: water's and JPEG's is not."""
@@ -111,13 +116,16 @@ def refined(
     n of them; None where one has no top, or none that says more than where it was supposed.
     """
     step = max(cell // FINE_CELL, 1)
+    overexposed = bool(clipped_at(frame_bgr, xy).all())
+    by_spacing = _by_spacing(xy)
     groups = [
-        (lamps, _patches(frame_bgr, xy[lamps], step, spacing / step))
-        for lamps, spacing in _by_spacing(xy)
+        (lamps, _patches(frame_bgr, xy[lamps], step, spacing / step, overexposed))
+        for lamps, spacing in by_spacing
     ]
     added = response.added_near(xy, cell).sum(axis=0)
     weights = _weights(added, [patches for _, patches in groups], response.covariance)
     found: dict[int, Tops] = {}
+    least: dict[int, tuple[NDArray[np.float64], NDArray[np.float32]]] = {}
     for lamps, patches in groups:
         # A cell is so many steps wide, and independent noise averages out by as much.
         slopes = _NOISE_SLOPE * INFLATION * cell * noise[lamps]
@@ -129,7 +137,14 @@ def refined(
             if tops is None or tops.sigma[0] > MAX_SHIFT * step:
                 return None
             found[lamp] = tops
-    return [found[lamp] for lamp in range(len(xy))]
+            least[lamp] = middle, smoothed[0]
+    tops_of = [found[lamp] for lamp in range(len(xy))]
+    large = have_cores(frame_bgr, np.array([tops.xy[0] for tops in tops_of])).any()
+    if not (overexposed and large):
+        return tops_of
+    room = by_spacing[0][1] / 2
+    cores = [_by_core(tops, *least[lamp], step, room) for lamp, tops in enumerate(tops_of)]
+    return [core for core in cores if core is not None] if all(cores) else None
 
 
 def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
@@ -168,11 +183,15 @@ class _Patches:
 
 
 def _patches(
-    frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64], step: int, spacing: float
+    frame_bgr: NDArray[np.uint8],
+    xy: NDArray[np.float64],
+    step: int,
+    spacing: float,
+    overexposed: bool,
 ) -> _Patches:
     """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker."""
     reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
-    large = step > 1 or clipped_at(frame_bgr, xy).all()
+    large = step > 1 or overexposed
     widest = (LARGE_WIDTH_PER_SPACING if large else WIDTH_PER_SPACING) * spacing
     widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], widest)]
     middle = int(reach + widths[-1]) + 1
@@ -249,3 +268,24 @@ def _tops(
         return None
     x_y, sigma, drift = tops[:count, :2], tops[:count, 2], tops[:count, 3]
     return Tops(middle + step * x_y, sigma, drift)
+
+
+def _by_core(
+    tops: Tops, middle: NDArray[np.float64], light: NDArray[np.float32], step: int, room: float
+) -> Tops | None:
+    """The place of an overexposed lamp, which has ``room`` pixels: its core's centroid.
+
+    Where channels clip from one lamp to the next the light between them is as bright as they are,
+    and its tops are drawn apart, by pixels.  ``light`` (s, s): as smoothed the least.  None where
+    nothing sets the lamp apart from its neighbour.
+    """
+    at = (tops.xy[0] - middle) / step
+    x, y = ffi.new("double *", at[0]), ffi.new("double *", at[1])
+    light = np.ascontiguousarray(light)
+    given = ffi.from_buffer("float[]", light)
+    if lib.tops_core(given, light.shape[0], room / step, x, y):
+        return None
+    xy = middle + step * np.array([x[0], y[0]])
+    off = float(np.linalg.norm(xy - tops.xy[0]))
+    sigma = math.hypot(min(tops.sigma[0], CORE_ERROR_PX), CORE_ERROR_SHARE * off)
+    return Tops(xy[None], np.array([sigma]), np.zeros(1))

@@ -102,6 +102,9 @@ def refined(
     pixels, unlike cells, have their colour from a mosaic and from JPEG at half the resolution, and
     what is taken away there moves the top.
 
+    Lamps of which all are overexposed, and one over several pixels, are at the centroids of their
+    cores instead: see ``_by_core``.
+
     Parameters
     ----------
     frame_bgr : (H, W, 3) uint8.
@@ -113,7 +116,8 @@ def refined(
 
     Returns
     -------
-    n of them; None where one has no top, or none that says more than where it was supposed.
+    n of them; None where one has no top, or none that says more than where it was supposed, or
+    where an overexposed one is one with its neighbour.
     """
     step = max(cell // FINE_CELL, 1)
     overexposed = bool(clipped_at(frame_bgr, xy).all())

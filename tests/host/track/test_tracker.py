@@ -233,7 +233,10 @@ def test_what_stands_a_little_like_a_dock_that_went_dark_is_not_taken_for_it(run
 
 def test_a_dock_that_was_dark_is_followed_again_from_its_first_look(run: Run) -> None:
     rng = np.random.default_rng(5)
-    bright: Seen = lambda time_s, plan: found(approach(time_s), rng, 4 * LOCK_EVIDENCE)  # noqa: E731
+
+    def bright(time_s: float, plan: Plan) -> Found:
+        return found(approach(time_s), rng, 4 * LOCK_EVIDENCE)
+
     run.frames(2.0, bright)
     run.frames(KEPT_S - 3 / HZ, nothing)
     assert run.frame(bright).state == "tracking"

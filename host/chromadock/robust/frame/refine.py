@@ -143,8 +143,8 @@ def refined(
             found[lamp] = tops
             least[lamp] = middle, smoothed[0]
     tops_of = [found[lamp] for lamp in range(len(xy))]
-    large = have_cores(frame_bgr, np.array([tops.xy[0] for tops in tops_of])).any()
-    if not (overexposed and large):
+    places = np.array([tops.xy[0] for tops in tops_of])
+    if not overexposed or not have_cores(frame_bgr, places).any():
         return tops_of
     room = by_spacing[0][1] / 2
     cores = [_by_core(tops, *least[lamp], step, room) for lamp, tops in enumerate(tops_of)]

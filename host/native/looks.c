@@ -1,4 +1,5 @@
 #include "internal/looks.h"
+#include "internal/vectors.h"
 
 #include <math.h>
 
@@ -20,41 +21,39 @@ void looks_prepare(int stride, ring_t rings[LOOKS_RINGS])
             const int across[4] = {along, radius, -along, -radius};
             ring->off[i] = down[i / side] * stride + across[i / side];
             const double angle = TURN * i / ring->count;
-            ring->once[0][i] = (float)cos(angle);
-            ring->once[1][i] = (float)sin(angle);
-            ring->twice[0][i] = (float)cos(2 * angle);
-            ring->twice[1][i] = (float)sin(2 * angle);
+            const double waves[LOOKS_WAVES] = {1, cos(angle), sin(angle),
+                                               cos(2 * angle), sin(2 * angle)};
+            for (int k = 0; k < LOOKS_WAVES; k++)
+                ring->waves[i][k] = (float)waves[k];
         }
     }
 }
 
-/* Size of a Fourier coefficient of a ring's values. */
-static float coefficient(const float *values,
-                         const float wave[2][LOOKS_LARGEST_RING], int count)
+/* Size of a Fourier coefficient of so many values. */
+static float coefficient(float cosine, float sine, int count)
 {
-    float cosine = 0, sine = 0;
-    for (int i = 0; i < count; i++) {
-        cosine += values[i] * wave[0][i];
-        sine += values[i] * wave[1][i];
-    }
     return sqrtf(cosine * cosine + sine * sine) / (float)count;
 }
 
-static void look_at_ring(const float *cell, const ring_t *ring, float centre,
-                         double looks[4])
+WIDE_VECTORS static void look_at_ring(const float *cell, const ring_t *ring,
+                                      float centre, double looks[4])
 {
-    float values[LOOKS_LARGEST_RING], sum = 0, square = 0;
-    for (int i = 0; i < ring->count; i++) {
+    float values[LOOKS_LARGEST_RING], sums[LOOKS_WAVES] = {0}, square = 0;
+    for (int i = 0; i < ring->count; i++)
         values[i] = cell[ring->off[i]] / centre;
-        sum += values[i];
+    for (int i = 0; i < ring->count; i++) {
         square += values[i] * values[i];
+        /* Unrolled, it would not be made of vector instructions. */
+#pragma GCC unroll 1
+        for (int k = 0; k < LOOKS_WAVES; k++)
+            sums[k] += values[i] * ring->waves[i][k];
     }
-    const float mean = sum / (float)ring->count;
+    const float mean = sums[0] / (float)ring->count;
     const float variance = square / (float)ring->count - mean * mean;
     looks[0] = (double)mean;
     looks[1] = (double)sqrtf(greater(variance, 0));
-    looks[2] = (double)coefficient(values, ring->once, ring->count);
-    looks[3] = (double)coefficient(values, ring->twice, ring->count);
+    looks[2] = (double)coefficient(sums[1], sums[2], ring->count);
+    looks[3] = (double)coefficient(sums[3], sums[4], ring->count);
 }
 
 /* The cell of another scale that a place is in. */
@@ -183,13 +182,15 @@ void front_inputs(const double *looks, double snr, int scale, float *inputs)
     base[4] = scale >= 3 ? 1.0F : 0.0F;
 }
 
-double looks_likeness(const front_network_t *network, const double *looks,
-                      double snr, int scale)
+WIDE_VECTORS double looks_likeness(const front_network_t *network,
+                                   const double *looks, double snr, int scale)
 {
     float inputs[FRONT_INPUTS + 1], hidden[FRONT_HIDDEN] = {0}, sum = 0;
     front_inputs(looks, snr, scale, inputs);
     inputs[FRONT_INPUTS] = 1.0F;
     for (int i = 0; i <= FRONT_INPUTS; i++) {
+        /* Unrolled, it would not be made of vector instructions. */
+#pragma GCC unroll 1
         for (int j = 0; j < FRONT_HIDDEN; j++)
             hidden[j] += inputs[i] * network->hidden[i][j];
         sum += inputs[i] * network->of_inputs[i];

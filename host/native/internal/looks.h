@@ -6,12 +6,16 @@
 
 enum { LOOKS_RINGS = 3, LOOKS_LARGEST_RING = 8 * LOOKS_RINGS };
 
-/* The cells of one ring about a cell: how far in memory each is, and the cosine
- * and sine of one and of two turns. */
+/* Numbers that a cell of a ring is multiplied by, for as many sums: 1, the
+ * cosine and sine of one turn, and those of two.  The others are 0, for vectors
+ * are so wide. */
+enum { LOOKS_WAVES = 8 };
+
+/* The cells of one ring about a cell: how far in memory each is. */
 typedef struct {
     int count;
     int off[LOOKS_LARGEST_RING];
-    float once[2][LOOKS_LARGEST_RING], twice[2][LOOKS_LARGEST_RING];
+    float waves[LOOKS_LARGEST_RING][LOOKS_WAVES];
 } ring_t;
 
 /* Fills in the rings of an image whose rows begin `stride` numbers from each

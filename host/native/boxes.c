@@ -12,44 +12,28 @@
 /* Cells whose quotients are worked out together. */
 #define CELLS 32
 
-/* Of so many steps from 0 on, those that are a cell's. */
-typedef struct {
-    int32_t first, end;
-} part_t;
+/* Numbers that are added up together, as many as fit a vector: the channels of
+ * a pixel, and BOXES_SPARE behind them, whose sums nobody needs. */
+#define LANES 8
+_Static_assert(LANES == 3 + BOXES_SPARE, "what is read lies in the room");
 
-/* Where the next cell begins: at `next`, and `over` parts of a step more, of
- * which there are as many as cells.  Without a division for each cell. */
-typedef struct {
-    int32_t next, over;
-    int32_t whole, rest, cells;
-} parts_t;
-
-static parts_t parts_of(int32_t size, int32_t cells)
+static boxes_part_t part_of(int32_t cell, int32_t size, int32_t cells)
 {
-    return (parts_t){0, 0, size / cells, size % cells, cells};
-}
-
-static part_t next_part(parts_t *parts)
-{
-    const int32_t first = parts->next;
-    parts->next += parts->whole;
-    parts->over += parts->rest;
-    if (parts->over >= parts->cells) {
-        parts->over -= parts->cells;
-        parts->next++;
-    }
-    return (part_t){first, parts->next > first ? parts->next : first + 1};
+    const int32_t first = cell * size / cells;
+    const int32_t end = (cell + 1) * size / cells;
+    return (boxes_part_t){first, end > first ? end : first + 1};
 }
 
 /* Adds the pixels of some rows, ROWS at most, to the sums of the cells that
- * they are in.  room: for one row of numbers. */
+ * they are in.  room: for one row of numbers and
+ * BOXES_SPARE more. */
 WIDE_VECTORS static void add_rows(const uint8_t *rows, int32_t count,
-                                  int32_t width, int32_t across,
-                                  uint16_t *restrict room,
+                                  int32_t width, const boxes_part_t *columns,
+                                  int32_t across, uint16_t *restrict room,
                                   uint32_t *restrict sums)
 {
     const size_t numbers = 3 * (size_t)width;
-    memset(room, 0, numbers * sizeof *room);
+    memset(room, 0, (numbers + BOXES_SPARE) * sizeof *room);
     int32_t y = 0;
     /* Four at once, for the sums need be fetched and put back but once. */
     for (; y + 4 <= count; y += 4) {
@@ -63,19 +47,17 @@ WIDE_VECTORS static void add_rows(const uint8_t *rows, int32_t count,
         for (size_t k = 0; k < numbers; k++)
             room[k] = (uint16_t)(room[k] + row[k]);
     }
-    parts_t parts = parts_of(width, across);
     for (int32_t j = 0; j < across; j++, sums += 3) {
-        const part_t columns = next_part(&parts);
-        uint32_t first = 0, second = 0, third = 0;
+        uint32_t cell[LANES] = {0};
 #pragma GCC unroll 4
-        for (int32_t x = columns.first; x < columns.end; x++) {
-            first += room[3 * x];
-            second += room[3 * x + 1];
-            third += room[3 * x + 2];
+        for (int32_t x = columns[j].first; x < columns[j].end; x++) {
+            /* Unrolled, it would not be made of vector instructions. */
+#pragma GCC unroll 1
+            for (int32_t c = 0; c < LANES; c++)
+                cell[c] += room[3 * x + c];
         }
-        sums[0] += first;
-        sums[1] += second;
-        sums[2] += third;
+        for (int32_t c = 0; c < 3; c++)
+            sums[c] += cell[c];
     }
 }
 
@@ -93,31 +75,32 @@ WIDE_VECTORS static void divide(const uint32_t *restrict sums,
 
 void boxes_mean(const uint8_t *pixels, int32_t height, int32_t width,
                 int32_t down, int32_t across, const uint8_t scale[3],
-                uint16_t *room, uint32_t *sums, uint8_t *means)
+                boxes_part_t *columns, uint16_t *room, uint32_t *sums,
+                uint8_t *means)
 {
     const size_t numbers = 3 * (size_t)across;
-    parts_t all_rows = parts_of(height, down);
-    for (int32_t i = 0; i < down; i++) {
-        const part_t rows = next_part(&all_rows);
+    for (int32_t j = 0; j < across; j++)
+        columns[j] = part_of(j, width, across);
+    for (int32_t i = 0; i < down; i++, means += numbers) {
+        const boxes_part_t rows = part_of(i, height, down);
         memset(sums, 0, numbers * sizeof *sums);
         for (int32_t y = rows.first; y < rows.end; y += ROWS) {
             const int32_t left = rows.end - y;
             add_rows(pixels + (size_t)y * 3 * (size_t)width,
-                     left < ROWS ? left : ROWS, width, across, room, sums);
+                     left < ROWS ? left : ROWS, width, columns, across, room,
+                     sums);
         }
-        parts_t all_columns = parts_of(width, across);
         for (int32_t j = 0; j < across; j += CELLS) {
             const int32_t cells = across - j < CELLS ? across - j : CELLS;
             double full[3 * CELLS] = {0};
             for (int32_t k = 0; k < cells; k++) {
-                const part_t columns = next_part(&all_columns);
+                const boxes_part_t wide = columns[j + k];
                 const double count = (double)(rows.end - rows.first) *
-                                     (double)(columns.end - columns.first);
+                                     (double)(wide.end - wide.first);
                 for (int32_t c = 0; c < 3; c++)
                     full[3 * k + c] = scale[c] * count;
             }
             divide(sums + 3 * j, full, cells, means + 3 * j);
         }
-        means += numbers;
     }
 }

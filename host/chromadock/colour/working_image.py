@@ -42,7 +42,8 @@ def working_image(
         ffi.from_buffer("uint8_t[]", np.ascontiguousarray(pixels)),
         *(height, width, *means.shape[:2]),
         scale,
-        ffi.from_buffer("uint16_t[]", np.empty(3 * width, np.uint16)),
+        ffi.new("boxes_part_t[]", method.WORKING_WIDTH),
+        ffi.from_buffer("uint16_t[]", np.empty(3 * width + lib.BOXES_SPARE, np.uint16)),
         ffi.from_buffer("uint32_t[]", np.empty(means[0].size, np.uint32)),
         ffi.from_buffer("uint8_t[]", means),
     )

@@ -43,21 +43,27 @@ void hue_of_pixels(const hue_tables_t *tables, const uint8_t *rgb,
     }
 }
 
+/* Grey is rounded, halves up, before it is told which interval it is in. */
+static inline int32_t bin_of(const hue_grey_t *grey, const uint8_t *rgb)
+{
+    const int32_t sum =
+        grey->red * rgb[0] + grey->green * rgb[1] + grey->blue * rgb[2];
+    return ((sum + (1 << (grey->shift - 1))) >> grey->shift) * grey->bins >> 8;
+}
+
 void hue_sum(const hue_tables_t *tables, const int32_t *sine,
-             const uint8_t *rgb, const int32_t *bins, int32_t count,
-             int32_t bin, hue_sums_t *sums)
+             const hue_grey_t *grey, const uint8_t *rgb, int32_t count,
+             hue_sums_t *sums)
 {
     const int32_t *cosine = sine + tables->range / 4;
-    hue_sums_t all = {0, 0, 0, 0, 0};
     for (int32_t i = 0; i < count; i++, rgb += 3) {
-        if (bins[i] != bin)
-            continue;
         const hsvc_t pixel = hsvc_of(tables, rgb);
-        all.x += pixel.chroma * cosine[pixel.hue];
-        all.y += pixel.chroma * sine[pixel.hue];
-        all.chroma += pixel.chroma;
-        all.saturation += pixel.saturation;
-        all.value += pixel.value;
+        hue_sums_t *bin = &sums[bin_of(grey, rgb)];
+        bin->count++;
+        bin->x += pixel.chroma * cosine[pixel.hue];
+        bin->y += pixel.chroma * sine[pixel.hue];
+        bin->chroma += pixel.chroma;
+        bin->saturation += pixel.saturation;
+        bin->value += pixel.value;
     }
-    *sums = all;
 }

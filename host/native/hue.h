@@ -15,10 +15,18 @@ typedef struct {
     const int32_t *by_value;  /* 256: 255 over each value */
 } hue_tables_t;
 
-/* Sums over pixels: of chroma times cosine and sine of the hue, of chroma, of
- * saturation and of value. */
+/* Weights of the channels in a pixel's grey, which add up to 1 in fixed point,
+ * and how many equal intervals its 256 values are divided into. */
 typedef struct {
-    int64_t x, y, chroma, saturation, value;
+    int32_t red, green, blue;
+    int32_t shift; /* bits behind the point */
+    int32_t bins;
+} hue_grey_t;
+
+/* Of the pixels of one grey interval: how many they are, and sums of chroma
+ * times cosine and sine of the hue, of chroma, of saturation and of value. */
+typedef struct {
+    int64_t count, x, y, chroma, saturation, value;
 } hue_sums_t;
 
 /* Hue, 0 to range - 1, saturation, value and chroma, 0 to 255, of some pixels.
@@ -28,12 +36,12 @@ typedef struct {
 void hue_of_pixels(const hue_tables_t *tables, const uint8_t *rgb,
                    int32_t count, int32_t *hsvc);
 
-/* Adds up those of some pixels that are in one bin.
+/* Adds up the pixels of each grey interval.
  *
  * sine: of each hue from 0 on, a turn and a quarter of them.
- * bins: the bin that each pixel is in. */
+ * sums: those of each interval, dark to bright, are added to these. */
 void hue_sum(const hue_tables_t *tables, const int32_t *sine,
-             const uint8_t *rgb, const int32_t *bins, int32_t count,
-             int32_t bin, hue_sums_t *sums);
+             const hue_grey_t *grey, const uint8_t *rgb, int32_t count,
+             hue_sums_t *sums);
 
 #endif

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from chromadock.colour.background import grey_bins, grey_range
+from chromadock.colour.background import background_colour, grey_range
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.colour.marker import observed_colour
 from chromadock.paper.mask import colour_mask, foreground
@@ -55,8 +55,8 @@ def test_the_printed_mask_cannot_see_the_expected_colour_in_pool_blue() -> None:
     water, marker = (38, 138, 188), (255, 0, 170)
     observed = observed_colour(water, marker)
     assert observed == (147, 138, 188)
-    greys = grey_bins(np.array([[water, observed]], np.uint8))
-    assert greys.tolist() == [[2, 2]]
+    greys = [background_colour(np.array([[rgb]], np.uint8)).bin for rgb in (water, observed)]
+    assert greys == [2, 2]
 
 
 def test_the_five_grey_ranges_are_equal_and_leave_no_gap() -> None:

@@ -11,7 +11,7 @@ import sys
 import cv2
 import numpy as np
 
-from chromadock.colour.background import grey_bins
+from chromadock.colour.background import background_colour
 from chromadock.colour.hsv import hsv_from_rgb as host_hsv
 from chromadock_firmware import hsv_from_rgb as c_hsv
 
@@ -29,6 +29,15 @@ def exact_hue(rgb: np.ndarray) -> np.ndarray:
     return (512 * distance + divisor) // (2 * divisor) % 1536
 
 
+def in_other_intervals(rgb: np.ndarray, intervals: np.ndarray) -> int:
+    """How many of (N, 3) colours the host has in another grey interval than (N,) 0..4."""
+    others = 0
+    for interval in np.unique(intervals).tolist():
+        own = rgb[intervals == interval]
+        others += len(own) - background_colour(own[None]).bin_counts[interval]
+    return others
+
+
 def main(hue_range: int) -> None:
     compared = different = 0
     for start in range(0, 1 << 24, CHUNK):
@@ -42,10 +51,9 @@ def main(hue_range: int) -> None:
             different += int((by_c != by_opencv).any(-1).sum())
         else:
             different += int((by_c[:, 0] != exact_hue(rgb)).sum())
-            # The bins of the background step, whose grey comes from OpenCV on the host.
-            r, g, b = rgb.astype(np.int64).T
-            grey = (9798 * r + 19235 * g + 3735 * b + 16384) >> 15
-            different += int((grey_bins(rgb[None])[0] != grey * 5 >> 8).sum())
+            # The grey intervals of the background step are those of OpenCV's grey.
+            grey = cv2.cvtColor(rgb[None], cv2.COLOR_RGB2GRAY)[0]
+            different += in_other_intervals(rgb, grey.astype(np.int64) * 5 >> 8)
         compared += len(rgb)
     print(cv2.__version__, compared, different)
 

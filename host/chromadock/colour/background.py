@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +12,16 @@ from chromadock._native import ffi, lib
 from chromadock.colour.hsv import TABLES, hue_of_vector, pointer, rgb_from_hsv
 
 _SINE = pointer(method_tables.SINE)
+_GREY = ffi.new(
+    "hue_grey_t *",
+    (
+        method.GREY_RED,
+        method.GREY_GREEN,
+        method.GREY_BLUE,
+        method.GREY_SHIFT,
+        method.GREY_BINS,
+    ),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +55,6 @@ class BackgroundColour:
         return rgb_from_hsv(self.hue, self.saturation, self.value)
 
 
-def grey_bins(rgb: NDArray[np.uint8]) -> NDArray[np.int32]:
-    """Grey interval 0..4 of each pixel of an (..., 3) RGB image."""
-    grey: NDArray[np.uint8] = np.asarray(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY), np.uint8)
-    return (grey.astype(np.int32) * method.GREY_BINS) >> 8
-
-
 def grey_range(bin: int) -> tuple[int, int]:
     """Least and greatest grey 0..255 of an interval."""
     first = -(-256 * bin // method.GREY_BINS)
@@ -70,23 +73,24 @@ def background_colour(
     min_value : 0..255; a darker background means nothing.  The dock's unless given; the
         vehicle's, which sees the lamps glow, is ``method.MIN_VALUE_VEHICLE``.
     """
-    bins = grey_bins(image)
-    counts = np.bincount(bins.ravel(), minlength=method.GREY_BINS)
-    fullest = int(np.argmax(counts))  # the first of equals: ties go to the darker
-    sums = ffi.new("hue_sums_t *")
+    sums = ffi.new("hue_sums_t[]", method.GREY_BINS)
     pixels = ffi.from_buffer("uint8_t[]", np.ascontiguousarray(image))
-    lib.hue_sum(TABLES, _SINE, pixels, pointer(bins), bins.size, fullest, sums)
-    x, y, chroma_sum = sums.x, sums.y, sums.chroma
-    saturation_sum, value_sum = sums.saturation, sums.value
+    size = len(pixels) // 3
+    lib.hue_sum(TABLES, _SINE, _GREY, pixels, size, sums)
+    counts = tuple(each.count for each in sums)
+    n = max(counts)
+    fullest = counts.index(n)  # the first of equals: ties go to the darker
+    of_fullest = sums[fullest]
+    x, y, chroma_sum = of_fullest.x, of_fullest.y, of_fullest.chroma
+    saturation_sum, value_sum = of_fullest.saturation, of_fullest.value
 
-    n, size = int(counts[fullest]), bins.size
     mean_saturation = (2 * saturation_sum + n) // (2 * n)
     mean_value = (2 * value_sum + n) // (2 * n)
     share = (510 * n + size) // (2 * size)
     mean_hue = hue_of_vector(x, y)
     resultant = 0 if mean_hue is None else _resultant(x, y, mean_hue, chroma_sum)
     return BackgroundColour(
-        bin_counts=tuple(int(c) for c in counts),
+        bin_counts=counts,
         bin=fullest,
         hue_x=x,
         hue_y=y,

@@ -178,18 +178,6 @@ void bounds_of_strengths(search_t *search)
     search->strengths = all;
 }
 
-double bounds_most_looks(const search_t *search, int32_t k)
-{
-    const search_bounds_t *bounds = search->bounds;
-    double rarity = bounds->rarest[bounds->markers - k];
-    double colour = bounds->log_colours[search->set[0]];
-    for (int32_t i = 0; i < k; i++) {
-        rarity += bounds->rarity[search->set[i]];
-        colour = larger(colour, bounds->log_colours[search->set[i]]);
-    }
-    return search->strengths + rarity + colour + ROUNDING;
-}
-
 double bounds_beside(const search_t *search, int32_t k)
 {
     const search_bounds_t *bounds = search->bounds;

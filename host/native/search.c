@@ -221,46 +221,55 @@ static void see_from(search_t *search, base_t *base)
     base->seen = true;
 }
 
-/* Search all sets with a base and a third marker, at x + iy as seen from it. */
-static void search_third(search_t *search, base_t *base, int32_t third,
-                         double x, double y)
+/* Tell which facets a third marker at x + iy, as seen from the base, may be
+ * seen in where all but places comes to `most`, and the log density of the
+ * places there; returns whether there are any. */
+static inline bool list_facets(const search_t *search, const base_t *base,
+                               double x, double y, double most,
+                               double there[SEARCH_MAX_FACETS],
+                               int64_t fits[SEARCH_MAX_FACETS])
+{
+    const search_third_t *third = &search->dock->thirds[base->span];
+    const double place = base->place, gate = search->dock->gate;
+    const double least = search->least;
+    int64_t any = 0;
+    /* Unrolled, it would not be made of vector instructions. */
+#pragma GCC unroll 1
+    for (int32_t k = 0; k < SEARCH_MAX_FACETS; k++) {
+        const double off =
+            square(third->u[k] + third->ux[k] * x) +
+            square(third->v[k] + third->vx[k] * x + third->vy[k] * y);
+        there[k] = place + third->log_norm[k] - 0.5 * off;
+        fits[k] = (off < gate) & (there[k] + most >= least);
+        any |= fits[k];
+    }
+    return any != 0;
+}
+
+/* Search all sets with a base and a third marker, at x + iy as seen from it, in
+ * the facets that it fits. */
+static void search_third(search_t *search, base_t *base, double x, double y,
+                         const double there[SEARCH_MAX_FACETS],
+                         const int64_t fits[SEARCH_MAX_FACETS])
 {
     const search_dock_t *dock = search->dock;
-    double looks = 0;
-    bool known = false;
+    if (search->weighed >= search->most_weighed)
+        return;
+    search->weighed++;
     strengths_t strengths = {0};
-    search->set[1] = base->q;
-    search->set[2] = third;
-    const double most = bounds_most_looks(search, 3);
-    const int32_t first = base->span * dock->facets;
-    const int32_t wide = 2 * (dock->markers - 2);
-    const double *offset = dock->offset + first * wide;
-    const double *whiten = dock->whiten + first * wide * wide;
-    for (int32_t facet = 0; facet < dock->facets;
-         facet++, offset += wide, whiten += wide * wide) {
-        expected_t expected = expect(search, 2, offset, whiten);
-        double off = off_square(&expected, x, y);
-        double there = base->place + dock->log_norm[first + facet] - 0.5 * off;
-        /* Few have to be looked at closely. */
-        if (off >= dock->gate || there + most < search->least)
-            continue;
-        if (!known) {
-            if (search->weighed >= search->most_weighed)
-                return;
-            known = true;
-            search->weighed++;
-            take(search, 0, search->set[0], 0, 0, &strengths);
-            take(search, 1, base->q, 1, 0, &strengths);
-            take(search, 2, third, x, y, &strengths);
-            looks = bounds_looks(search, 3, &strengths);
-        }
-        if (there + looks < search->least)
+    take(search, 0, search->set[0], 0, 0, &strengths);
+    take(search, 1, base->q, 1, 0, &strengths);
+    take(search, 2, search->set[2], x, y, &strengths);
+    const double looks = bounds_looks(search, 3, &strengths);
+    for (int32_t facet = 0; facet < dock->facets; facet++) {
+        if (!fits[facet] || there[facet] + looks < search->least)
             continue;
         if (!base->seen)
             see_from(search, base);
-        there += base->turn;
-        if (there + looks >= search->least)
-            extend(search, 3, first + facet, there, looks, &strengths);
+        const double place = there[facet] + base->turn;
+        if (place + looks >= search->least)
+            extend(search, 3, base->span * dock->facets + facet, place, looks,
+                   &strengths);
     }
 }
 
@@ -268,7 +277,7 @@ static void search_third(search_t *search, base_t *base, int32_t third,
 WIDE_VECTORS static void search_base(search_t *search, base_t *base,
                                      const views_t *sides)
 {
-    const search_box_t box = search->dock->thirds[base->span];
+    const search_box_t box = search->dock->boxes[base->span];
     const double base_x = base->x / base->square;
     const double base_y = base->y / base->square;
     const int32_t count = sides->count;
@@ -292,10 +301,20 @@ WIDE_VECTORS static void search_base(search_t *search, base_t *base,
     const double most = base->place + search->dock->most_norm[base->span] +
                         search->beside + rarity[search->set[0]] +
                         rarity[base->q];
-    for (int32_t j = 0; j < count; j++)
-        if (inside[j] && sides->peak[j] != base->q &&
-            most + rarity[sides->peak[j]] >= search->least)
-            search_third(search, base, sides->peak[j], x[j], y[j]);
+    search->set[1] = base->q;
+    for (int32_t j = 0; j < count; j++) {
+        const int32_t third = sides->peak[j];
+        if (!inside[j] || third == base->q ||
+            most + rarity[third] < search->least)
+            continue;
+        double there[SEARCH_MAX_FACETS];
+        int64_t fits[SEARCH_MAX_FACETS];
+        search->set[2] = third;
+        /* Few have to be looked at closely. */
+        if (list_facets(search, base, x[j], y[j], bounds_most_looks(search, 3),
+                        there, fits))
+            search_third(search, base, x[j], y[j], there, fits);
+    }
 }
 
 /* Search all sets whose first marker is at a peak. */
@@ -323,21 +342,20 @@ int32_t search_find(const search_dock_t *dock, const search_bounds_t *bounds,
                     int32_t *members, double *evidence, double *looks,
                     int32_t *weighed)
 {
-    search_t search;
     *weighed = 0;
     if (bounds->count < dock->markers)
         return 0;
-    search.bounds = bounds;
-    search.dock = dock;
-    search.least = least;
-    search.log_places = log(bounds->frame->area) + dock->log_spread;
-    search.weighed = 0;
-    search.most_weighed = most_weighed;
-    search.most_sets = most_sets;
-    search.found = 0;
-    search.members = members;
-    search.evidence = evidence;
-    search.looks = looks;
+    search_t search = {
+        .bounds = bounds,
+        .dock = dock,
+        .least = least,
+        .log_places = log(bounds->frame->area) + dock->log_spread,
+        .most_weighed = most_weighed,
+        .most_sets = most_sets,
+        .members = members,
+        .evidence = evidence,
+        .looks = looks,
+    };
     bounds_of_strengths(&search);
     search.beside = bounds_beside(&search, 3);
     for (int32_t p = 0; p < bounds->count; p++)

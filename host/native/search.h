@@ -20,6 +20,9 @@
 /* More are refused; at most 70 kB of stack are used. */
 enum { SEARCH_MAX_PROMISING = 64 };
 
+/* As many fit into two vectors. */
+enum { SEARCH_MAX_FACETS = 8 };
+
 /* Where one marker is seen from another: its displacement d is at least
  * shortest and at most longest pixels long, and at an angle to the unit vector
  * (x, y) whose tangent is at most slope. */
@@ -32,6 +35,17 @@ typedef struct {
     double left, right, top, bottom;
 } search_box_t;
 
+/* The facets of a span side by side: log of the facet's share in the span,
+ * times the density of b at its peak; and where the third marker is expected: w
+ * is u + ux x, v + vx x + vy y for its b = x + iy.  Beyond the last facet
+ * log_norm is minus infinity, and the others are 0. */
+typedef struct {
+    double log_norm[SEARCH_MAX_FACETS];
+    double u[SEARCH_MAX_FACETS], v[SEARCH_MAX_FACETS];
+    double ux[SEARCH_MAX_FACETS];
+    double vx[SEARCH_MAX_FACETS], vy[SEARCH_MAX_FACETS];
+} search_third_t;
+
 /* What a dock of n markers looks like to one camera, for peaks of one scale.
  *
  * Its first two markers, p and q, are the base; the shape of the others is
@@ -43,23 +57,22 @@ typedef struct {
  * w = offset + W b is standard normal, and the two components of it that a
  * marker adds depend on its own b and on those before it alone. */
 typedef struct {
-    int32_t markers; /* n, 3 or more */
-    int32_t spans, facets;
+    int32_t markers;            /* n, 3 or more */
+    int32_t spans, facets;      /* the latter SEARCH_MAX_FACETS at most */
     search_window_t base, side; /* of q, and of the third marker, from p */
     double slack;               /* pixels: what windows allow for errors */
     double roll_rad;            /* standard deviation of the base's direction */
     double log_spread;          /* log of the base's range of log lengths, times
                                  * roll_rad sqrt(2 pi) */
     double gate; /* w squared is less than this for each marker of a dock */
-    const double *along;     /* n: places along the dock, -1..1 */
-    const double *edges;     /* spans - 1 lengths between them, pixels */
-    const double *log_norm;  /* spans x facets: log of the facet's share in the
-                              * span, times the density of b at its peak */
-    const double *most_norm; /* spans: the largest of its facets' */
-    const double *offset;    /* spans x facets x 2m: minus W times the mean */
-    const double *whiten;    /* spans x facets x 2m x 2m: W, lower triangular;
-                              * Re b_3, Im b_3, Re b_4, ... */
-    const search_box_t *thirds; /* spans: where b_3 passes some facet's gate */
+    const double *along;       /* n: places along the dock, -1..1 */
+    const double *edges;       /* spans - 1 lengths between them, pixels */
+    const double *most_norm;   /* spans: the largest log_norm of its facets */
+    const double *offset;      /* spans x facets x 2m: minus W times the mean */
+    const double *whiten;      /* spans x facets x 2m x 2m: W, lower triangular;
+                                * Re b_3, Im b_3, Re b_4, ... */
+    const search_box_t *boxes; /* spans: where b_3 passes some facet's gate */
+    const search_third_t *thirds; /* spans */
 } search_dock_t;
 
 /* What a search takes from the peaks of one scale, whichever dock of so many

@@ -61,7 +61,17 @@ void bounds_of_strengths(search_t *search);
 
 /* What bounds_looks() is at most, told by what is known of each of the first k
  * peaks alone. */
-double bounds_most_looks(const search_t *search, int32_t k);
+static inline double bounds_most_looks(const search_t *search, int32_t k)
+{
+    const search_bounds_t *bounds = search->bounds;
+    double rarity = bounds->rarest[bounds->markers - k];
+    double colour = bounds->log_colours[search->set[0]];
+    for (int32_t i = 0; i < k; i++) {
+        rarity += bounds->rarity[search->set[i]];
+        colour = larger(colour, bounds->log_colours[search->set[i]]);
+    }
+    return search->strengths + rarity + colour + ROUNDING;
+}
 
 /* The same whichever the first k are, but for their rarity. */
 double bounds_beside(const search_t *search, int32_t k);

@@ -102,16 +102,21 @@ class Search:
         reach = np.sqrt(near * np.diagonal(covariance, axis1=1, axis2=2)[:, :2])
         low = (model.mean[:, :2] - reach).reshape(spans, FACETS, 2).min(axis=1)
         high = (model.mean[:, :2] + reach).reshape(spans, FACETS, 2).max(axis=1)
+        offset = -(whiten @ model.mean[..., None])[..., 0]
+        of_third = [norm, *offset.T[:2], whiten[:, 0, 0], whiten[:, 1, 0], whiten[:, 1, 1]]
+        thirds = np.zeros((spans, len(of_third), lib.SEARCH_MAX_FACETS))
+        thirds[:, 0] = -np.inf
+        thirds[:, :, :FACETS] = np.reshape(of_third, (-1, spans, FACETS)).transpose(1, 0, 2)
         turns = model.roll_rad * np.sqrt(2 * np.pi)
         # C's pointers keep nothing alive.
         self._kept = [
             doubles(model.along),
             doubles(model.edges),
-            doubles(norm),
             doubles(norm.reshape(spans, FACETS).max(axis=1)),
-            doubles(-(whiten @ model.mean[..., None])),
+            doubles(offset),
             doubles(whiten),
             ffi.from_buffer("search_box_t[]", np.stack([low, high], axis=2)),
+            ffi.from_buffer("search_third_t[]", thirds),
         ]
         side = model.side.beyond(apart_px)
         self._dock = ffi.new(

@@ -167,11 +167,11 @@ void looks_at(const front_frame_t *frame, const ring_t rings[LOOKS_RINGS],
 void front_inputs(const double *looks, double snr, int scale, float *inputs)
 {
     for (int i = 0; i < FRONT_LOOKS; i++) {
-        const double low = i < FRONT_RINGS      ? 0.0
-                           : i < FRONT_CHANNELS ? -1.0
-                                                : -2.0;
-        const double high = i < FRONT_RINGS ? 1.0 : 2.0;
-        inputs[i] = (float)fmin(fmax(looks[i], low), high);
+        const float low = i < FRONT_RINGS      ? 0.0F
+                          : i < FRONT_CHANNELS ? -1.0F
+                                               : -2.0F;
+        const float high = i < FRONT_RINGS ? 1.0F : 2.0F;
+        inputs[i] = lesser(greater((float)looks[i], low), high);
     }
     const float strength = (float)log(fmin(snr, FRONT_MOST_SNR));
     float *base = inputs + FRONT_LOOKS;

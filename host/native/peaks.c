@@ -1,4 +1,5 @@
 #include "internal/looks.h"
+#include "internal/vectors.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -65,16 +66,19 @@ void front_chroma(const front_frame_t *frame, const double *added, int n,
 
 /* Chooses the peaks that are likelier lamps than clutter as strong is common,
  * of n peaks. */
-static void choose_promising(const double *snr, const double *likeness, int n,
-                             uint8_t *promising)
+WIDE_VECTORS static void choose_promising(const double *snr,
+                                          const double *likeness, int n,
+                                          uint8_t *promising)
 {
     double score[FRONT_MAX_PEAKS];
     for (int i = 0; i < n; i++)
         score[i] = likeness[i] + WORTH * log(snr[i]);
     for (int i = 0; i < n; i++) {
-        int better = 0;
-        for (int j = 0; j < n; j++)
-            better += score[j] > score[i] || (j < i && score[j] >= score[i]);
+        int64_t better = 0;
+        for (int j = 0; j < i; j++)
+            better += score[j] >= score[i];
+        for (int j = i + 1; j < n; j++)
+            better += score[j] > score[i];
         promising[i] = better < FRONT_MAX_PROMISING;
     }
 }

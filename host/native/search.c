@@ -330,9 +330,9 @@ static void search_from(search_t *search, int32_t p)
     for (int32_t i = 0; i < bases.count; i++) {
         base_t base = {bases.peak[i],   0, bases.x[i], bases.y[i],
                        bases.square[i], 0, 0,          false};
-        while (base.span < dock->spans - 1 &&
-               square(dock->edges[base.span]) < base.square)
-            base.span++;
+        /* Without a branch, for nobody could foretell it. */
+        for (int32_t k = 0; k < dock->spans - 1; k++)
+            base.span += square(dock->edges[k]) < base.square;
         search_base(search, &base, &sides);
     }
 }

@@ -48,6 +48,19 @@ class Peaks:
     looks: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, LOOKS)))
 
 
+_NOTHING = np.empty(0)
+NO_PEAKS = Peaks(
+    xy=np.empty((0, 2)),
+    snr=_NOTHING,
+    noise=_NOTHING,
+    chroma=np.empty((0, 2)),
+    likeness=_NOTHING,
+    promising=np.empty(0, np.intp),
+    inside=_NOTHING,
+)
+"""Of a scale without any: in plain water that is most of them."""
+
+
 def find_peaks(response: Response) -> dict[int, Peaks]:
     """Local maxima that a lamp may have made, MAX_PEAKS at most of each scale; by its cells."""
     places = MAX_PEAKS * len(response.layout.cells)
@@ -57,8 +70,10 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
     arrays = xy, snr, noise, chroma, looks, likeness, inside, promising
     native = ffi.new("front_peaks_t *", ([], *map(pointer, arrays)))
     lib.front_find(response.native, network(), native)
-    found = {}
+    found = dict.fromkeys(response.layout.cells, NO_PEAKS)
     for scale, cell in enumerate(response.layout.cells):
+        if not native.count[scale]:
+            continue
         first = MAX_PEAKS * scale
         these = slice(first, first + native.count[scale])
         found[cell] = Peaks(
@@ -67,7 +82,7 @@ def find_peaks(response: Response) -> dict[int, Peaks]:
             noise[these],
             chroma[these],
             likeness[these],
-            np.flatnonzero(promising[these]),
+            promising[these].nonzero()[0],
             inside[these],
             looks[these],
         )

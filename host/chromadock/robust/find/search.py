@@ -29,6 +29,8 @@ MAX_WEIGHED = 4000
 _NEAR_OF_FEW, _NEAR_OF_MANY = 40.0, 18.0
 _FEW = 5
 
+_BOUNDS_SIZE = lib.search_bounds_size()
+
 
 def gate(markers: int) -> float:
     """The chi-square that each of a dock's markers is below."""
@@ -69,7 +71,7 @@ class SearchedPeaks(PlacedPeaks):
             More promising peaks than C has room for.
         """
         if markers not in self._bounds:
-            memory = room(lib.search_bounds_size())
+            memory = room(_BOUNDS_SIZE)
             bounds = ffi.cast("search_bounds_t *", memory)
             promising = np.ascontiguousarray(self.peaks.promising, np.int32)
             if lib.search_prepare(
@@ -158,6 +160,8 @@ class Search:
             doubles(looks),
             weighed,
         )
+        if not count:
+            return Candidates(np.empty((0, markers), np.intp), evidence[:0], looks[:0], weighed[0])
         ordered = members[:count, self._by_marker].astype(np.intp)
         return Candidates(ordered, evidence[:count], looks[:count], weighed[0])
 

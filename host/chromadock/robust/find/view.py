@@ -122,6 +122,8 @@ class View:
             apart_px = cell * (FINEST_SPACING_CELLS if finest else MIN_SPACING_CELLS)
             self._searches[cell] = Search(self.model, PEAK_ERROR * cell, apart_px)
         found = self._searches[cell].find(among, HOPEFUL)
+        if not len(found.evidence):
+            return []
         best = zip(found.members, found.looks.tolist(), found.evidence.tolist(), strict=True)
         return [
             Candidate(cell, among, members, looks, evidence)

@@ -52,6 +52,8 @@ CONSTANTS = ffi.new(
     },
 )
 
+_FRAME_SIZE = lib.evidence_frame_size()
+
 
 class PlacedPeaks:
     """``peaks`` of one scale at ``z`` (N,) x + iy or (N, 2), in a frame of so many square pixels;
@@ -72,7 +74,7 @@ class PlacedPeaks:
         arrays = (z, peaks.snr, peaks.chroma, peaks.likeness, peaks.inside)
         kept = [doubles(array) for array in arrays]
         given = ffi.new("evidence_peaks_t *", (count, *kept, least, area))
-        self._room = room(lib.evidence_frame_size())
+        self._room = room(_FRAME_SIZE)
         self.native: Any = ffi.cast("evidence_frame_t *", self._room)
         if lib.evidence_prepare(self.native, CONSTANTS, given):
             raise ValueError(f"{count} peaks: too many")

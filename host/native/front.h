@@ -178,6 +178,11 @@ int front_respond(front_frame_t *frame, const uint8_t *bgr, int pixels,
                   const float *linear, const double *signatures,
                   float unexpected);
 
+/* Marks with 1 which cells of a scale of such a frame have a signal to noise of
+ * FRONT_MIN_SNR or more, and the others with 0, row by row without the border.
+ * Returns how many have. */
+int front_standing_out(const front_frame_t *frame, int scale, uint8_t *cells);
+
 /* Finds the peaks of a frame that front_respond() has filled in. */
 void front_find(const front_frame_t *frame, const front_network_t *network,
                 front_peaks_t *peaks);

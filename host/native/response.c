@@ -306,3 +306,19 @@ int front_respond(front_frame_t *frame, const uint8_t *bgr, int pixels,
     }
     return 0;
 }
+
+WIDE_VECTORS int front_standing_out(const front_frame_t *frame, int scale,
+                                    uint8_t *cells)
+{
+    const image_t snr = at_scale(&frame->layout, frame->snr, scale);
+    int count = 0;
+    for (int y = 0; y < snr.rows; y++) {
+        const float *row = row_of(snr, y);
+        for (int x = 0; x < snr.columns; x++) {
+            cells[x] = row[x] >= (float)FRONT_MIN_SNR;
+            count += cells[x];
+        }
+        cells += snr.columns;
+    }
+    return count;
+}

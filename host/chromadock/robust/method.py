@@ -14,8 +14,9 @@ from chromadock.look import Found, Look
 from chromadock.results.detection import Blob
 from chromadock.robust.find.measure import Measure
 from chromadock.robust.find.view import View, upright
+from chromadock.robust.frame.native import lib, pointer
 from chromadock.robust.frame.overexposure import clipped_at, stops_over
-from chromadock.robust.frame.peaks import MIN_SNR, Peaks, find_peaks
+from chromadock.robust.frame.peaks import Peaks, find_peaks
 from chromadock.robust.frame.received import received_hue
 from chromadock.robust.frame.response import MIN_SIDE, Response, respond
 from chromadock.robust.weigh.acceptance import MOST_DOUBT, Constellation
@@ -41,7 +42,7 @@ class RobustMethod:
         """(H, W): the pixels of the last frame that stand out in the markers' colour."""
         if self._response is None:
             return np.zeros(self._shape, np.uint8)
-        cells = _standing_out(self._response).astype(np.uint8)
+        cells, _ = _standing_out(self._response)
         size = self._shape[::-1]
         return np.asarray(cv2.resize(cells, size, interpolation=cv2.INTER_NEAREST), np.uint8)
 
@@ -94,8 +95,8 @@ class RobustMethod:
         peaks: dict[int, Peaks],
         response: Response,
     ) -> Found:
-        cells = _standing_out(response)
-        passed = int(np.count_nonzero(cells)) / cells.size
+        cells, count = _standing_out(response)
+        passed = count / cells.size
         blobs = _blobs(best, peaks)
         if best is None:
             return Found("not_found", passed, blobs)
@@ -120,9 +121,12 @@ class RobustMethod:
         )
 
 
-def _standing_out(response: Response) -> NDArray[np.bool_]:
-    """Which cells of the finest scale that shows all hues are above the least signal to noise."""
-    return np.asarray(response.snr[response.layout.inside(1)] >= MIN_SNR)
+def _standing_out(response: Response) -> tuple[NDArray[np.uint8], int]:
+    """Which cells of the finest scale that shows all hues have the least signal to noise of a peak:
+    (rows, columns) of 0 and 1; and how many."""
+    scale = 1
+    cells = np.empty(response.layout.shapes[scale], np.uint8)
+    return cells, lib.front_standing_out(response.native, scale, pointer(cells))
 
 
 def _blobs(best: Constellation | None, peaks: dict[int, Peaks]) -> tuple[Blob, ...]:

@@ -17,11 +17,11 @@ from front_reference import (
     weighed,
 )
 
-from chromadock._native import lib
 from chromadock.colour.hsv import rgb_from_hsv
 from chromadock.method import HUE_RANGE
 from chromadock.robust.frame.likeness import inputs
-from chromadock.robust.frame.peaks import find_peaks
+from chromadock.robust.frame.native import lib, pointer
+from chromadock.robust.frame.peaks import MIN_SNR, find_peaks
 from chromadock.robust.frame.response import HUES, linear, respond
 from chromadock.variety import Backdrops, Half, draw, render
 
@@ -60,6 +60,10 @@ def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
         snr = response.snr[inside]
         assert np.abs(snr - expected.snr).max() < 1e-3 * max(1.0, np.abs(expected.snr).max())
         assert np.mean(response.best[inside] != expected.best) < 1e-3
+        cells = np.empty(snr.shape, np.uint8)
+        count = lib.front_standing_out(response.native, k, pointer(cells))
+        assert np.array_equal(cells, snr >= MIN_SNR)
+        assert count == cells.sum()
     found = find_peaks(response)
     for cell, expected in zip(layout.cells, peaks_of(scales, response), strict=True):
         peaks = found[cell]

@@ -126,9 +126,13 @@ static tops_top_t top_of(const tops_patch_t *patch, const summit_t *summit,
     const double least = patch->step * TOPS_FLOOR * summit->width;
     const double noise = patch->noise * summit->error;
     return (tops_top_t){
-        summit->x - middle, summit->y - middle,
+        summit->x - middle,
+        summit->y - middle,
         sqrt(sampling * sampling + least * least + noise * noise),
-        patch->step * TOPS_DRIFT * drift};
+        patch->step * TOPS_DRIFT * drift,
+        patch->step * summit->width,
+        patch->step * patch->step * summit->error * summit->width *
+            summit->width};
 }
 
 /* Whether none of the eight places about one is brighter. */

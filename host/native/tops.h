@@ -57,9 +57,11 @@
 
 /* Where a lamp may be: x, y in steps from the patch's middle;
  * sigma: standard deviation in x as in y, pixels, if it is a lamp and round;
- * drift: that of what may draw it aside, pixels. */
+ * drift: that of what may draw it aside, pixels. width: of the smoothing that
+ * it is the top of, pixels; give: pixels by which a slope of that light of 1
+ * per pixel moves it. */
 typedef struct {
-    double x, y, sigma, drift;
+    double x, y, sigma, drift, width, give;
 } tops_top_t;
 
 /* One lamp's patch.

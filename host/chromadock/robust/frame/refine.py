@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import cv2
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
 from chromadock.native import doubles
+from chromadock.robust.frame.bars import leaning
 from chromadock.robust.frame.layout import FINE_CELL
 from chromadock.robust.frame.overexposure import clipped_at, have_cores
 from chromadock.robust.frame.response import Response, linear
@@ -69,12 +70,18 @@ class Tops:
     """Where a lamp may be, the likeliest first.
 
     ``xy`` (k, 2) pixels; ``sigma`` (k,): standard deviations in x as in y, pixels, if it is a lamp
-    and round; ``drift`` (k,): those of what may draw it aside.
+    and round; ``drift`` (k,): those of what may draw it aside.  ``width`` (k,) pixels, of the
+    smoothing; ``give`` (k,) pixels by which a slope of the smoothed light of 1 per pixel moves it.
+    ``lean`` (2,) pixels: by how much bright bars may draw it aside, as they may all lamps of the
+    dock (``bars``).
     """
 
     xy: NDArray[np.float64]
     sigma: NDArray[np.float64]
     drift: NDArray[np.float64]
+    width: NDArray[np.float64]
+    give: NDArray[np.float64]
+    lean: NDArray[np.float64]
 
     def nearest(self, place: NDArray[np.float64]) -> tuple[NDArray[np.float64], float, float]:
         """The one nearest to ``place`` (2,), pixels: its own place, error and drift."""
@@ -145,7 +152,9 @@ def refined(
     tops_of = [found[lamp] for lamp in range(len(xy))]
     places = np.array([tops.xy[0] for tops in tops_of])
     if not overexposed or not have_cores(frame_bgr, places).any():
-        return tops_of
+        width, give = np.array([(tops.width[0], tops.give[0]) for tops in tops_of]).T
+        leans = leaning(frame_bgr, places, width, give, weights)
+        return [replace(tops, lean=lean) for tops, lean in zip(tops_of, leans, strict=True)]
     room = by_spacing[0][1] / 2
     cores = [_by_core(tops, *least[lamp], step, room) for lamp, tops in enumerate(tops_of)]
     return [core for core in cores if core is not None] if all(cores) else None
@@ -263,15 +272,15 @@ def _tops(
 ) -> Tops | None:
     """Where a lamp may be, of smoothed light (k + 2, s, s) whose noise has so steep a slope,
     smoothed by 1 step; None where there is no top.  The others: see ``_Patches``."""
-    tops = np.empty((lib.TOPS_MOST, 4))
+    tops = np.empty((lib.TOPS_MOST, 6))
     layers, side, _ = smoothed.shape
     light = ffi.from_buffer("float[]", smoothed)
     given = (layers - 2, side, light, _WIDTHS, reach, step, slope)
     count = lib.tops_find(ffi.new("tops_patch_t *", given), ffi.from_buffer("tops_top_t[]", tops))
     if not count:
         return None
-    x_y, sigma, drift = tops[:count, :2], tops[:count, 2], tops[:count, 3]
-    return Tops(middle + step * x_y, sigma, drift)
+    sigma, drift, width, give = tops[:count, 2:].T
+    return Tops(middle + step * tops[:count, :2], sigma, drift, width, give, np.zeros(2))
 
 
 def _by_core(
@@ -292,4 +301,12 @@ def _by_core(
     xy = middle + step * np.array([x[0], y[0]])
     off = float(np.linalg.norm(xy - tops.xy[0]))
     sigma = math.hypot(min(tops.sigma[0], CORE_ERROR_PX), CORE_ERROR_SHARE * off)
-    return Tops(xy[None], np.array([sigma]), np.zeros(1))
+    # Its rim is as bright on all sides, whatever leads to it.
+    return Tops(
+        xy[None],
+        np.array([sigma]),
+        np.zeros(1),
+        tops.width[:1],
+        tops.give[:1],
+        np.zeros(2),
+    )

@@ -1,0 +1,106 @@
+#include "bars.h"
+
+#include "internal/pixels.h"
+
+#include <math.h>
+#include <stddef.h>
+
+enum { ACROSS = 2 * BARS_REACH * BARS_PER_WIDTH + 1 };
+
+typedef struct {
+    const uint8_t *bgr;
+    int32_t height, width;
+    const float *linear, *weights;
+} picture_t;
+
+/* The slope across the end of a line of light that is as bright as this says:
+ * a step smoothed by a Gaussian of width w slopes by 1 / (w root 2 pi). In
+ * units of a width, so that the same weights are any lamp's. */
+static void weigh_across(double across[ACROSS])
+{
+    const double root_two_pi = 2.50662827463100050;
+    double narrow[ACROSS], wide[ACROSS], beside[ACROSS];
+    double of_narrow = 0, of_wide = 0, of_beside = 0;
+    for (int k = 0; k < ACROSS; k++) {
+        const double off = (double)k / BARS_PER_WIDTH - BARS_REACH;
+        of_narrow += narrow[k] = exp(-off * off / 2);
+        of_wide += wide[k] = exp(-off * off / 8);
+        of_beside += beside[k] = fabs(off) >= BARS_BESIDE;
+    }
+    for (int k = 0; k < ACROSS; k++)
+        across[k] = (narrow[k] / of_narrow - wide[k] / of_wide / 2 -
+                     beside[k] / of_beside / 2) /
+                    root_two_pi;
+}
+
+static double middle_of(double values[BARS_ALONG])
+{
+    for (int i = 1; i < BARS_ALONG; i++) {
+        const double value = values[i];
+        int at = i;
+        for (; at > 0 && values[at - 1] > value; at--)
+            values[at] = values[at - 1];
+        values[at] = value;
+    }
+    return (values[BARS_ALONG / 2 - 1] + values[BARS_ALONG / 2]) / 2;
+}
+
+/* The light of the pixel that a place is in, through weights. */
+static double light_of(const picture_t *picture, double x, double y)
+{
+    const ptrdiff_t column = within(x + 0.5, picture->width);
+    const ptrdiff_t row = within(y + 0.5, picture->height);
+    const uint8_t *pixel = picture->bgr + 3 * (row * picture->width + column);
+    double light = 0;
+    for (int c = 0; c < 3; c++)
+        light +=
+            (double)picture->weights[c] * (double)picture->linear[pixel[c]];
+    return light;
+}
+
+/* Of a way from one place to another, x and y of its step and across it. */
+static double slope_along(const picture_t *picture, const double *from,
+                          const double step[2], const double side[2],
+                          const double across[ACROSS])
+{
+    double along[BARS_ALONG];
+    for (int n = 0; n < BARS_ALONG; n++) {
+        const double way =
+            BARS_FROM + (1 - 2 * BARS_FROM) * (n + 0.5) / BARS_ALONG;
+        along[n] = 0;
+        for (int k = 0; k < ACROSS; k++) {
+            const double off = k - ACROSS / 2;
+            along[n] +=
+                across[k] * light_of(picture,
+                                     from[0] + way * step[0] + off * side[0],
+                                     from[1] + way * step[1] + off * side[1]);
+        }
+    }
+    return fmax(middle_of(along), 0);
+}
+
+void bars_slopes(const uint8_t *bgr, int32_t height, int32_t width,
+                 const float *linear, const float *weights, int32_t count,
+                 const double *places, const double *widths, double *slopes)
+{
+    const picture_t picture = {bgr, height, width, linear, weights};
+    double across[ACROSS];
+    weigh_across(across);
+    for (ptrdiff_t i = 0; i < count; i++) {
+        const double *from = places + 2 * i;
+        slopes[2 * i] = slopes[2 * i + 1] = 0;
+        for (ptrdiff_t j = 0; j < count; j++) {
+            const double step[] = {places[2 * j] - from[0],
+                                   places[2 * j + 1] - from[1]};
+            const double far = hypot(step[0], step[1]);
+            if (!(far > 0))
+                continue;
+            const double stride = widths[i] / BARS_PER_WIDTH / far;
+            const double side[] = {-stride * step[1], stride * step[0]};
+            const double slope =
+                slope_along(&picture, from, step, side, across) / widths[i];
+            slopes[2 * i] += slope * step[0] / far;
+            slopes[2 * i + 1] += slope * step[1] / far;
+        }
+    }
+}

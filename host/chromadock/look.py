@@ -61,8 +61,9 @@ class Found:
     5 % of the range: no pose), ``partial`` (all markers but one, about where a prior has them or
     where ``incomplete`` allows it) or ``not_found``; ``passed_fraction`` the share of the frame
     that stands out in the markers' colour; ``pose`` the better one, with its alternative.
-    ``sigma_px``: standard deviations of the markers' places, in their order; ``estimates``: both
-    poses, with their information; both for a track.  ``evidence``: decades by which
+    ``sigma_px``: standard deviations of the markers' places, in their order; ``lean_px``: what may
+    be wrong with all of them together, see ``Sighting``, empty where nothing is; ``estimates``:
+    both poses, with their information; all for a track.  ``evidence``: decades by which
     the dock explains what was seen better than clutter does; None where a method does not
     weigh it.  ``hue`` 0..1535: of the light that the markers add, as received; ``clipped``,
     ``stops_over`` and ``misfit``: see ``Detection``.
@@ -80,6 +81,7 @@ class Found:
     stops_over: float | None = None
     misfit: Misfit | None = None
     sigma_px: tuple[float, ...] = ()
+    lean_px: tuple[Point, ...] = ()
 
 
 class Method(Protocol):

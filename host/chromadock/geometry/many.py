@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +45,15 @@ class Normal(NamedTuple):
     gradient: Real
     chi_square: Real
     seen: NDArray[np.bool_]
+
+
+def leaning_gradient(sighting: Sighting, R: Real, t: Real) -> Real:
+    """(M, 6): by how much the gradient of poses (M, 3, 3), (M, 3) would be greater without what may
+    be wrong with all pixels together: J' of it, in standard deviations."""
+    if sighting.lean_px is None:
+        return np.zeros((len(R), 6))
+    righted = replace(sighting, pixels=sighting.pixels - sighting.lean_px)
+    return normal_equations(righted, R, t).gradient - normal_equations(sighting, R, t).gradient
 
 
 def normal_equations(sighting: Sighting, R: Real, t: Real, sigma_px: Real | None = None) -> Normal:

@@ -98,6 +98,14 @@ class Estimate:
         back = lever(-arm)
         return replace(self, t=self.t + arm, information=back.T @ self.information @ back)
 
+    def drawn(self, off: NDArray[np.float64]) -> Estimate:
+        """The same pose, which may also be off by (6,), or by any multiple of it that is standard
+        normal."""
+        # The inverse of a sum: Sherman and Morrison.
+        told = self.information @ off
+        information = self.information - np.outer(told, told) / (1 + off @ told)
+        return replace(self, information=information)
+
     def pose(self, alternative: Pose | None = None) -> Pose:
         """The same for a ``Detection``."""
         x, y, z = self.t.tolist()
@@ -115,13 +123,16 @@ class Sighting:
     """Markers and where they were seen.
 
     ``points_dock`` (N, 3) float64, metres; ``pixels`` (N, 2) float64; ``sigma_px`` (N,) float64:
-    standard deviation of each pixel, in x as in y; N >= 3.
+    standard deviation of each pixel, in x as in y; N >= 3.  ``lean_px`` (N, 2) float64: what may be
+    wrong with all pixels together, by the same multiple of it, which is standard normal; None where
+    nothing is.
     """
 
     points_dock: NDArray[np.float64]
     pixels: NDArray[np.float64]
     sigma_px: NDArray[np.float64]
     camera: CameraModel
+    lean_px: NDArray[np.float64] | None = None
 
     @property
     def native(self) -> Any:

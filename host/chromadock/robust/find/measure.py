@@ -29,7 +29,7 @@ from chromadock.robust.weigh.acceptance import (
 from chromadock.robust.weigh.evidence import PlacedPeaks
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
 from chromadock.robust.weigh.shape import MIN_SPACING_CELLS
-from chromadock.robust.weigh.told import fitted_again, told
+from chromadock.robust.weigh.told import fitted_again, leaning, told
 from chromadock.robust.weigh.twin import is_image_of
 
 MISFIT_DECADES = 8.0
@@ -138,11 +138,12 @@ class Measure:
         if tops is None:
             return None
         xy, sigma, drift = _choices(tops)
+        lean = np.array([top.lean for top in tops])
         likely = self.view.log_shape(xy, sigma, self.upright) if len(xy) > 1 else np.zeros(1)
         k = int(likely.argmax())
         if on_one_thing(self.frame_bgr, xy[k]):
             return None
-        sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera)
+        sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera, lean)
         poses = estimates(sighting)
         if not poses:
             return None
@@ -157,8 +158,8 @@ class Measure:
         sighting, poses, unsure = self._told(sighting, poses, placed, drift[k])
         if self._too_far(poses) or not self._all_belong(candidate, sighting, poses[0]):
             return None
-        markers = np.arange(len(self.view.points))
-        return Constellation(markers, xy[k], sighting.sigma_px, evidence, poses, unsure, amiss)
+        known = xy[k], sighting.sigma_px, evidence, poses, unsure, amiss, lean
+        return Constellation(np.arange(len(self.view.points)), *known)
 
     def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
         """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
@@ -201,10 +202,12 @@ class Measure:
         places = found if guess.expected is None else guess.expected
         nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
         xy, sigma, drift = (np.array(values) for values in zip(*nearest, strict=True))
+        lean = np.array([top.lean for top in tops])
         # Where a track has the dock its lamps may be so near that they run into each other.
         if not priors and on_one_thing(self.frame_bgr, xy):
             return None
-        sighting = Sighting(self.view.points[guess.markers], xy, sigma, self.view.camera)
+        points = self.view.points[guess.markers]
+        sighting = Sighting(points, xy, sigma, self.view.camera, lean)
         poses = _downhill(sighting, priors) if priors else estimates(sighting)
         if not poses:
             return None
@@ -217,12 +220,14 @@ class Measure:
         if priors:
             # About a track's pose the track says how sure the place is.
             sighting, poses, _ = fitted_again(sighting, poses, placed, drift)
+            poses = leaning(sighting, poses, self.prior)
             unsure = 0.0
         else:
             sighting, poses, unsure = self._told(sighting, poses, placed, drift)
         if self._too_far(poses):
             return None
-        return Constellation(guess.markers, xy, sighting.sigma_px, evidence, poses, unsure, amiss)
+        known = xy, sighting.sigma_px, evidence, poses, unsure, amiss, lean
+        return Constellation(guess.markers, *known)
 
 
 def misfit(

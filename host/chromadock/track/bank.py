@@ -79,7 +79,7 @@ class Bank:
     @property
     def doubt(self) -> float:
         """Probability that the place of the dock's origin is off by more than 5 % of its range."""
-        states = [h.state for h in self.hypotheses]
+        states = [h.state.as_told for h in self.hypotheses]
         return doubt(states, [h.weight for h in self.hypotheses])
 
     def about(self, origin: Floats) -> Bank:
@@ -221,5 +221,6 @@ def _merged(a: _Branch, b: _Branch) -> _Branch:
     off = _off(a.state, b.state)
     covariance = (1 - share) * a.state.covariance + share * b.state.covariance
     covariance = covariance + share * (1 - share) * np.outer(off, off)
-    state = a.state.corrected(share * off, covariance)
+    drawn = (1 - share) * a.state.drawn + share * b.state.drawn
+    state = replace(a.state.corrected(share * off, covariance), drawn=drawn)
     return _Branch(state, log_weight, a.first or b.first)

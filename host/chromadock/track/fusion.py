@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.many import normal_equations
+from chromadock.geometry.many import leaning_gradient, normal_equations
 from chromadock.geometry.pose import Sighting
 from chromadock.track.motion import ATTITUDE, POSE, RATE, State, rotation, turn_between
 
@@ -77,9 +77,12 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
     gain = P[:, POSE] @ prior
     left = np.linalg.inv(information) - P[POSE, POSE]
     chi_square = float(misfit + off @ prior @ off)
+    leaning = leaning_gradient(seen, R[None], t[None])[0]
+    drawn = np.linalg.solve(information, prior @ state.drawn[POSE] + leaning)
+    drawn = state.drawn + gain @ (drawn - state.drawn[POSE])
     gained = np.linalg.slogdet(information)[1] - np.linalg.slogdet(prior)[1]
     return Fused(
-        state.corrected(gain @ off, P + gain @ left @ gain.T),
+        replace(state.corrected(gain @ off, P + gain @ left @ gain.T), drawn=drawn),
         seen.pixels.size,
         chi_square,
         -0.5 * chi_square - 0.5 * float(gained),
@@ -112,6 +115,6 @@ def _fused(state: State, part: slice, off: Floats, covariance: Floats) -> Fused:
     gain = np.linalg.solve(spread, P[part]).T
     chi_square = float(off @ np.linalg.solve(spread, off))
     log_likelihood = -0.5 * chi_square - 0.5 * float(np.linalg.slogdet(spread)[1])
-    return Fused(
-        state.corrected(gain @ off, P - gain @ P[part]), len(off), chi_square, log_likelihood
-    )
+    corrected = state.corrected(gain @ off, P - gain @ P[part])
+    drawn = state.drawn - gain @ state.drawn[part]
+    return Fused(replace(corrected, drawn=drawn), len(off), chi_square, log_likelihood)

@@ -9,7 +9,7 @@ along with its attitude, so what bearings tell of the turn holds for the attitud
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
@@ -60,7 +60,11 @@ class State:
     ``R`` (3, 3), ``t`` (3,) metres: ``T_camera_dock``.  ``velocity`` (3,) m/s: of the dock as
     seen by a camera that does not turn.  ``turn_rate`` (3,) rad/s: of the camera; both in
     camera axes.  ``covariance`` (12, 12) of the errors of t, of small turns of the dock about
-    the camera's axes (as in ``pose.Estimate``), of velocity and turn rate.
+    the camera's axes (as in ``pose.Estimate``), of velocity and turn rate.  ``drawn`` (12,): by how
+    much all of these are off if what may be wrong with all markers together, in every frame alike,
+    is as wrong as one standard deviation.  No number of frames makes that less, so it is carried
+    along beside the filter and not in its covariance: a parameter that is considered and not
+    estimated (Schmidt; Jazwinski, Stochastic Processes and Filtering Theory, 1970, section 8.4).
     """
 
     R: Floats
@@ -68,6 +72,12 @@ class State:
     velocity: Floats
     turn_rate: Floats
     covariance: Floats
+    drawn: Floats = field(default_factory=lambda: np.zeros(12))
+
+    @property
+    def as_told(self) -> State:
+        """The same with all that may be wrong in its covariance: for the user, and for doubt."""
+        return replace(self, covariance=self.covariance + np.outer(self.drawn, self.drawn))
 
     def corrected(self, step: Floats, covariance: Floats) -> State:
         """With errors (12,) taken off."""
@@ -77,6 +87,7 @@ class State:
             self.velocity + step[6:9],
             self.turn_rate + step[9:],
             (covariance + covariance.T) / 2,
+            self.drawn,
         )
 
     def moved_to(self, R: Floats, t: Floats, pose_covariance: Floats) -> State:
@@ -84,7 +95,10 @@ class State:
         covariance = self.covariance.copy()
         covariance[POSE, 6:] = covariance[6:, POSE] = 0.0
         covariance[POSE, POSE] = pose_covariance
-        return State(R, t, self.velocity, self.turn_rate, covariance)
+        drawn = self.drawn.copy()
+        # What may be wrong with a frame's pose is in its own covariance.
+        drawn[POSE] = 0.0
+        return State(R, t, self.velocity, self.turn_rate, covariance, drawn)
 
     def strayed(self, variance: float) -> State:
         """With a turn rate that has changed meanwhile, each of its numbers with ``variance``."""
@@ -102,7 +116,7 @@ class State:
         J[POSE, POSE] = lever(arm)
         covariance = J @ self.covariance @ J.T
         symmetric = (covariance + covariance.T) / 2
-        return State(self.R, self.t + arm, self.velocity, self.turn_rate, symmetric)
+        return State(self.R, self.t + arm, self.velocity, self.turn_rate, symmetric, J @ self.drawn)
 
     def after(self, elapsed_s: float, swift: float = 0.0) -> State:
         """The state ``elapsed_s`` >= 0 later, nothing seen meanwhile.
@@ -122,7 +136,8 @@ class State:
         F[:, 9:] = of_turning * elapsed_s
         F[9:, 9:] = _EYE
         covariance = F @ self.covariance @ F.T + _noise(of_turning, elapsed_s, swift)
-        return State(turned @ self.R, t, velocity, self.turn_rate, (covariance + covariance.T) / 2)
+        symmetric = (covariance + covariance.T) / 2
+        return State(turned @ self.R, t, velocity, self.turn_rate, symmetric, F @ self.drawn)
 
 
 def met(R: Floats, t: Floats, covariance: Floats) -> State:

@@ -43,8 +43,10 @@ class Sight:
         poses: Sequence[Estimate],
         dock: DockGeometry,
         camera: CameraModel,
+        lean_px: Sequence[tuple[float, float]] = (),
     ) -> Sight | None:
-        """From what a method found: ``markers`` with standard deviations in their order.
+        """From what a method found: ``markers`` with standard deviations in their order;
+        ``lean_px``: as of ``look.Found``.
 
         None where the best pose has a marker out of the camera's view.
         """
@@ -60,6 +62,7 @@ class Sight:
                 np.array(list(markers.values())),
                 np.sqrt(variance + FLOOR_PX**2),
                 camera,
+                np.array(lean_px) if lean_px else None,
             ),
             tuple(
                 replace(p, chi_square=p.chi_square / widened, information=p.information / widened)

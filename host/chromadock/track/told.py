@@ -24,7 +24,7 @@ def following(state: str, time_s: float, hypotheses: tuple[Hypothesis, ...], age
 
 def tracked_pose(hypothesis: Hypothesis) -> TrackedPose:
     """The pose of a hypothesis."""
-    state = hypothesis.state
+    state = hypothesis.state.as_told
     return TrackedPose(
         _vector(state.t.tolist()),
         quaternion_from_matrix(state.R),

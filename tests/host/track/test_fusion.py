@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -125,6 +126,41 @@ def test_the_errors_of_markers_have_a_floor() -> None:
     assert seen.markers.sigma_px == pytest.approx(np.hypot(0.3, FLOOR_PX), rel=0.02)
     assert seen.worth(0.25).markers.sigma_px == pytest.approx(2 * seen.markers.sigma_px)
     assert isinstance(seen.worth(1.0), Sight)
+
+
+def leaning(seen: Sight, share: float) -> Sight:
+    """A sight whose markers are all nearer to the dock's middle by that, or one standard error so
+    says."""
+    pixels = seen.markers.pixels
+    lean = -share * (pixels - pixels.mean(axis=0))
+    return replace(seen, markers=replace(seen.markers, pixels=pixels + lean, lean_px=lean))
+
+
+def test_what_all_frames_share_no_number_of_frames_makes_less() -> None:
+    """A dock that seems 3 % smaller in each frame is taken for farther, and the track knows."""
+    pose = rotation(5, 15), np.array([0.2, 0.0, 4.0])
+    rng = np.random.default_rng(7)
+    bank, known = Bank.of(leaning(sight(pose, rng), 0.03)), []
+    for _ in range(60):
+        bank = bank.after(0.1).seen(leaning(sight(pose, rng), 0.03)) or bank
+        known.append(bank.hypotheses[0].state.as_told.covariance[2, 2] ** 0.5)
+    state = bank.hypotheses[0].state
+    assert state.t[2] - 4.0 == pytest.approx(0.12, abs=0.04)
+    assert state.covariance[2, 2] ** 0.5 < 0.04
+    assert known[-1] == pytest.approx(0.12, abs=0.03)
+    assert nees(state.as_told, pose) < 12.59 < nees(state, pose)
+
+
+def test_frames_without_a_shared_error_take_it_away() -> None:
+    pose = rotation(5, 15), np.array([0.2, 0.0, 4.0])
+    rng = np.random.default_rng(8)
+    bank = Bank.of(sight(pose, rng))
+    for share in (*[0.03] * 40, *[0.0] * 40):
+        bank = bank.after(0.1).seen(leaning(sight(pose, rng), share)) or bank
+        if share:
+            drawn = bank.hypotheses[0].state.drawn[2]
+    assert drawn > 0.08
+    assert abs(bank.hypotheses[0].state.drawn[2]) < 0.2 * drawn
 
 
 def test_a_level_forward_camera_sees_a_level_dock_as_it_is() -> None:

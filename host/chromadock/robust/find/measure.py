@@ -27,9 +27,10 @@ from chromadock.robust.weigh.acceptance import (
     Constellation,
 )
 from chromadock.robust.weigh.evidence import PlacedPeaks
+from chromadock.robust.weigh.leaning import leaning
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
 from chromadock.robust.weigh.shape import MIN_SPACING_CELLS
-from chromadock.robust.weigh.told import fitted_again, leaning, told
+from chromadock.robust.weigh.told import fitted_again, told
 from chromadock.robust.weigh.twin import is_image_of
 
 MISFIT_DECADES = 8.0
@@ -187,9 +188,10 @@ class Measure:
         placed: Placement,
         drift_px: NDArray[np.float64],
     ) -> tuple[Sighting, tuple[Estimate, ...], float]:
-        """See ``weigh.told``."""
+        """See ``weigh.told`` and ``weigh.leaning``."""
         bright = fluxes(self.frame_bgr, sighting.pixels)
-        return told(sighting, poses, placed, drift_px, bright, self.prior, self.judged)
+        found = told(sighting, poses, placed, drift_px, bright, self.prior, self.judged)
+        return found[0], leaning(found[0], found[1], self.prior), found[2]
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()

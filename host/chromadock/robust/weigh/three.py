@@ -109,10 +109,7 @@ def _fitting(sighting: Sighting, sigma_px: Real) -> tuple[Real, Real]:
     centre = sighting.points_dock.mean(axis=0)
     points = sighting.points_dock - centre
     found: list[Start] = []
-    off = sigma_px[:, :, None] * _errors()
-    if sighting.lean_px is not None:
-        off += _shared()[:, None, None] * sighting.lean_px
-    for places in sighting.pixels + off:
+    for places in sighting.pixels + sigma_px[:, :, None] * _errors():
         flat = Flat.of(sighting.camera, places)
         if flat is not None:
             _, rotations, translations = cv2.solveP3P(
@@ -122,13 +119,6 @@ def _fitting(sighting: Sighting, sigma_px: Real) -> tuple[Real, Real]:
     R = np.array([pose for pose, _ in found]).reshape(-1, 3, 3)
     t = np.array([place for _, place in found]).reshape(-1, 3)
     return R, t - R @ centre
-
-
-@cache
-def _shared() -> Real:
-    """(SAMPLES,) standard normal numbers, in pairs as ``_errors`` are."""
-    half = np.random.default_rng(2).standard_normal(SAMPLES // 2)
-    return np.stack([half, -half], axis=1).ravel()
 
 
 @cache

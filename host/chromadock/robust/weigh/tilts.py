@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.many import leaning_gradient, normal_equations, rotation_vectors, rotations
+from chromadock.geometry.many import normal_equations, rotation_vectors, rotations
 from chromadock.geometry.pose import MIN_MARKERS, Estimate, Sighting
 from chromadock.robust.frame.flux import Fluxes
 from chromadock.robust.weigh.acceptance import share_beyond
@@ -66,10 +66,7 @@ def doubt_over_tilts(
     # How far the point moves along the line of sight by x, y, z and by the turn about the normal.
     turned = np.einsum("mi,mi->m", sight, np.cross(R[:, :, 2], arm))
     by_each = np.column_stack([sight, turned])
-    known = np.linalg.inv(information)
-    variance = np.einsum("mi,mij,mj->m", by_each, known, by_each)
-    leaning = np.einsum("mji,mj->mi", _by_four(R), leaning_gradient(sighting, R, t - arm))
-    variance += np.einsum("mi,mij,mj->m", by_each, known, leaning) ** 2
+    variance = np.einsum("mi,mij,mj->m", by_each, np.linalg.inv(information), by_each)
     return share_beyond(told.t + told.R @ judged, t, np.sqrt(variance), weights)
 
 
@@ -93,7 +90,9 @@ def _normal_equations(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real,
     by the turn about the dock's normal; (M,) chi-square.  A pose that ran away stays where it is,
     with an infinite chi-square."""
     normal = normal_equations(sighting, R, t)
-    by = _by_four(R)
+    # What the six coordinates of a pose do by those four.
+    by = np.zeros((len(R), 6, 4))
+    by[:, :3, :3], by[:, 3:, 3] = np.eye(3), R[:, :, 2]
     information = by.transpose(0, 2, 1) @ normal.information @ by
     gradient = by.transpose(0, 2, 1) @ normal.gradient[..., None]
     ran_away = ~(np.isfinite(information).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=(1, 2)))
@@ -101,14 +100,6 @@ def _normal_equations(sighting: Sighting, R: Real, t: Real) -> tuple[Real, Real,
     chi_square = np.where(ran_away, np.inf, normal.chi_square)
     trace = np.trace(information, axis1=1, axis2=2)[:, None, None]
     return information + _DAMPING * trace * np.eye(4), gradient, chi_square
-
-
-def _by_four(R: Real) -> Real:
-    """(M, 6, 4): what the six coordinates of a pose do by its place and by the turn about the
-    dock's normal."""
-    by = np.zeros((len(R), 6, 4))
-    by[:, :3, :3], by[:, 3:, 3] = np.eye(3), R[:, :, 2]
-    return by
 
 
 def _rolled(R_expected: Real, R: Real) -> Real:

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.many import leaning_gradient, normal_equations
 from chromadock.geometry.pose import MIN_MARKERS, Estimate, Sighting, refined
 from chromadock.geometry.profile import widened
 from chromadock.robust.frame.flux import Fluxes
@@ -44,7 +43,7 @@ def told(
     """
     bright = placed.weighed(_log_nearness(fluxes, sighting, poses))
     seen, poses, weights = fitted_again(sighting, poses, bright, drift_px)
-    poses = leaning(seen, tuple(widened(seen, pose) for pose in poses), prior)
+    poses = tuple(widened(seen, pose) for pose in poses)
     roughly = doubt([pose.about(judged) for pose in poses], weights.tolist())
     if roughly < NO_DOUBT:
         return seen, poses, roughly
@@ -77,21 +76,6 @@ def fitted_again(
     sighting = replace(sighting, sigma_px=sigma_px)
     again = tuple(refined(sighting, pose.R, pose.t) or pose for pose in poses)
     return sighting, again, weights
-
-
-def leaning(
-    sighting: Sighting, poses: tuple[Estimate, ...], prior: PosePrior
-) -> tuple[Estimate, ...]:
-    """The poses, less sure by what may be wrong with all markers together."""
-    if sighting.lean_px is None:
-        return poses
-    R, t = np.array([pose.R for pose in poses]), np.array([pose.t for pose in poses])
-    information = normal_equations(sighting, R, t).information
-    # Places hardly tell a far dock's tilt: what they would make of it is not believed.
-    information[:, 3:, 3:] += prior.R_information
-    gradient = leaning_gradient(sighting, R, t)
-    off = np.linalg.solve(information, gradient[..., None])[..., 0]
-    return tuple(pose.drawn(step) for pose, step in zip(poses, off, strict=True))
 
 
 def _log_nearness(fluxes: Fluxes | None, sighting: Sighting, poses: tuple[Estimate, ...]) -> Real:

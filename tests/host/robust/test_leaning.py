@@ -23,8 +23,8 @@ R = rotations(np.radians([[0.0, 20.0, 0.0]]))[0]
 def test_what_may_make_the_dock_smaller_makes_its_range_less_sure(
     count: int, range_m: float
 ) -> None:
-    """Of markers that may all be nearer to the middle by 4 %, one standard error: the range by about
-    as much, for a tilt may take a part of it or add to it."""
+    """Of markers that may all be nearer to the middle by 4 %, one standard error: the range by
+    about as much, for a tilt may take a part of it or add to it."""
     points = POINTS[:count] - POINTS[:count].mean(axis=0)
     pixels = CAMERA.project(points @ R.T + np.array([0.1, 0.0, range_m]))
     lean = -0.04 * (pixels - pixels.mean(axis=0))

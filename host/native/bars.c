@@ -58,7 +58,25 @@ static double light_of(const picture_t *picture, double x, double y)
     return light;
 }
 
-/* Of a way from one place to another, x and y of its step and across it. */
+/* The light of a line that crosses the way from one place to another, such a
+ * share of it on: less what stands behind a bar. */
+static double light_across(const picture_t *picture, const double *from,
+                           const double step[2], const double side[2],
+                           double way, const double across[ACROSS])
+{
+    double light = 0;
+    for (int k = 0; k < ACROSS; k++) {
+        const double off = k - ACROSS / 2;
+        light += across[k] *
+                 light_of(picture, from[0] + way * step[0] + off * side[0],
+                          from[1] + way * step[1] + off * side[1]);
+    }
+    return light;
+}
+
+/* The slope that a bar along the way from one lamp to another makes there,
+ * times the width. What both lamps' own halos add is as much as that of the
+ * first one adds on its other side, as far from it as either lamp is. */
 static double slope_along(const picture_t *picture, const double *from,
                           const double step[2], const double side[2],
                           const double across[ACROSS])
@@ -67,14 +85,11 @@ static double slope_along(const picture_t *picture, const double *from,
     for (int n = 0; n < BARS_ALONG; n++) {
         const double way =
             BARS_FROM + (1 - 2 * BARS_FROM) * (n + 0.5) / BARS_ALONG;
-        along[n] = 0;
-        for (int k = 0; k < ACROSS; k++) {
-            const double off = k - ACROSS / 2;
-            along[n] +=
-                across[k] * light_of(picture,
-                                     from[0] + way * step[0] + off * side[0],
-                                     from[1] + way * step[1] + off * side[1]);
-        }
+        const double halos =
+            light_across(picture, from, step, side, -way, across) +
+            light_across(picture, from, step, side, way - 1, across);
+        along[n] = light_across(picture, from, step, side, way, across) -
+                   fmax(halos, 0);
     }
     return fmax(middle_of(along), 0);
 }

@@ -25,7 +25,8 @@
 
 /* The slope of the light at each lamp, smoothed by a difference of Gaussians,
  * that bars would make which lead from it to others, end there, and are as
- * bright as the middle of the way: what is dark makes none.
+ * bright as the middle of the way, but for what the lamps themselves shine on
+ * it: as much as on the first one's other side.  What is dark makes none.
  *
  * bgr: height x width x 3 codes. linear: the light of each of 256 codes.
  * weights: what each channel counts, BGR. places: count x 2, x and y in pixels.

@@ -67,13 +67,23 @@ def test_lamps_without_bright_bars_are_not_drawn(bars: np.ndarray | None, post: 
     assert np.abs([top.lean for top in found]).max() < 0.05
 
 
-def test_a_lamp_on_the_way_to_another_is_no_bar() -> None:
-    row = np.array([(40.0 + 45 * k, 90.0) for k in range(4)])
+def lamps_alone(places: np.ndarray, radius: float) -> list[Tops]:
     y, x = np.mgrid[0:180, 0:220].astype(float)
     light = np.tile(WATER, (180, 220, 1))
-    for px, py in row:
-        light += np.exp(-0.5 * ((x - px) ** 2 + (y - py) ** 2) / 1.6**2)[..., None] * RED
+    for px, py in places:
+        light += np.exp(-0.5 * ((x - px) ** 2 + (y - py) ** 2) / radius**2)[..., None] * RED
     frame = np.rint(255 * np.clip(light, 0, 1) ** (1 / 2.2)).astype(np.uint8)
-    found = refined(frame, row, 4, respond(frame, 0, 512.0), np.ones(4))
+    found = refined(frame, places, 4, respond(frame, 0, 512.0), np.ones(len(places)))
     assert found is not None
+    return found
+
+
+def test_a_lamp_on_the_way_to_another_is_no_bar() -> None:
+    found = lamps_alone(np.array([(40.0 + 45 * k, 90.0) for k in range(4)]), 1.6)
+    assert np.abs([top.lean for top in found]).max() < 0.05
+
+
+def test_what_lamps_shine_on_each_other_is_no_bar() -> None:
+    """Of two that are close to each other."""
+    found = lamps_alone(np.array([(60.0, 80.0), (160.0, 80.0), (60.0, 91.0), (160.0, 91.0)]), 2.5)
     assert np.abs([top.lean for top in found]).max() < 0.05

@@ -67,9 +67,9 @@ static double light_across(const picture_t *picture, const double *from,
     double light = 0;
     for (int k = 0; k < ACROSS; k++) {
         const double off = k - ACROSS / 2;
-        light += across[k] *
-                 light_of(picture, from[0] + way * step[0] + off * side[0],
-                          from[1] + way * step[1] + off * side[1]);
+        light += across[k] * light_of(picture,
+                                      from[0] + way * step[0] + off * side[0],
+                                      from[1] + way * step[1] + off * side[1]);
     }
     return light;
 }

@@ -25,8 +25,7 @@ static boxes_part_t part_of(int32_t cell, int32_t size, int32_t cells)
 }
 
 /* Adds the pixels of some rows, ROWS at most, to the sums of the cells that
- * they are in.  room: for one row of numbers and
- * BOXES_SPARE more. */
+ * they are in.  room: for one row of numbers and BOXES_SPARE more. */
 WIDE_VECTORS static void add_rows(const uint8_t *rows, int32_t count,
                                   int32_t width, const boxes_part_t *columns,
                                   int32_t across, uint16_t *restrict room,

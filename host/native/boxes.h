@@ -8,7 +8,7 @@
 /* Numbers behind a row's own that are read with its last pixel. */
 #define BOXES_SPARE 5
 
-/* Of a frame's columns, those that a cell covers. */
+/* Of a frame's columns, or of its rows, those that a cell covers. */
 typedef struct {
     int32_t first, end;
 } boxes_part_t;

@@ -43,22 +43,14 @@ void hue_of_pixels(const hue_tables_t *tables, const uint8_t *rgb,
     }
 }
 
-/* Grey is rounded, halves up, before it is told which interval it is in. */
-static inline int32_t bin_of(const hue_grey_t *grey, const uint8_t *rgb)
-{
-    const int32_t sum =
-        grey->red * rgb[0] + grey->green * rgb[1] + grey->blue * rgb[2];
-    return ((sum + (1 << (grey->shift - 1))) >> grey->shift) * grey->bins >> 8;
-}
-
 void hue_sum(const hue_tables_t *tables, const int32_t *sine,
-             const hue_grey_t *grey, const uint8_t *rgb, int32_t count,
-             hue_sums_t *sums)
+             const uint8_t *rgb, const uint8_t *grey, int32_t count,
+             int32_t bins, hue_sums_t *sums)
 {
     const int32_t *cosine = sine + tables->range / 4;
     for (int32_t i = 0; i < count; i++, rgb += 3) {
         const hsvc_t pixel = hsvc_of(tables, rgb);
-        hue_sums_t *bin = &sums[bin_of(grey, rgb)];
+        hue_sums_t *bin = &sums[grey[i] * bins >> 8];
         bin->count++;
         bin->x += pixel.chroma * cosine[pixel.hue];
         bin->y += pixel.chroma * sine[pixel.hue];

@@ -15,14 +15,6 @@ typedef struct {
     const int32_t *by_value;  /* 256: 255 over each value */
 } hue_tables_t;
 
-/* Weights of the channels in a pixel's grey, which add up to 1 in fixed point,
- * and how many equal intervals its 256 values are divided into. */
-typedef struct {
-    int32_t red, green, blue;
-    int32_t shift; /* bits behind the point */
-    int32_t bins;
-} hue_grey_t;
-
 /* Of the pixels of one grey interval: how many they are, and sums of chroma
  * times cosine and sine of the hue, of chroma, of saturation and of value. */
 typedef struct {
@@ -39,9 +31,11 @@ void hue_of_pixels(const hue_tables_t *tables, const uint8_t *rgb,
 /* Adds up the pixels of each grey interval.
  *
  * sine: of each hue from 0 on, a turn and a quarter of them.
+ * grey: of each pixel.
+ * bins: equal intervals that its 256 values are divided into.
  * sums: those of each interval, dark to bright, are added to these. */
 void hue_sum(const hue_tables_t *tables, const int32_t *sine,
-             const hue_grey_t *grey, const uint8_t *rgb, int32_t count,
-             hue_sums_t *sums);
+             const uint8_t *rgb, const uint8_t *grey, int32_t count,
+             int32_t bins, hue_sums_t *sums);
 
 #endif

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,16 +13,6 @@ from chromadock._native import ffi, lib
 from chromadock.colour.hsv import TABLES, hue_of_vector, pointer, rgb_from_hsv
 
 _SINE = pointer(method_tables.SINE)
-_GREY = ffi.new(
-    "hue_grey_t *",
-    (
-        method.GREY_RED,
-        method.GREY_GREEN,
-        method.GREY_BLUE,
-        method.GREY_SHIFT,
-        method.GREY_BINS,
-    ),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +66,9 @@ def background_colour(
     """
     sums = ffi.new("hue_sums_t[]", method.GREY_BINS)
     pixels = ffi.from_buffer("uint8_t[]", np.ascontiguousarray(image))
-    size = len(pixels) // 3
-    lib.hue_sum(TABLES, _SINE, _GREY, pixels, size, sums)
+    grey = ffi.from_buffer("uint8_t[]", cv2.cvtColor(image, cv2.COLOR_RGB2GRAY))
+    size = len(grey)
+    lib.hue_sum(TABLES, _SINE, pixels, grey, size, method.GREY_BINS, sums)
     counts = tuple(each.count for each in sums)
     n = max(counts)
     fullest = counts.index(n)  # the first of equals: ties go to the darker

@@ -47,13 +47,13 @@ class Normal(NamedTuple):
     seen: NDArray[np.bool_]
 
 
-def leaning_gradient(sighting: Sighting, R: Real, t: Real) -> Real:
-    """(M, 6): by how much the gradient of poses (M, 3, 3), (M, 3) would be greater without what may
-    be wrong with all pixels together: J' of it, in standard deviations."""
+def leaning_gradient(sighting: Sighting, R: Real, t: Real, gradient: Real) -> Real:
+    """(M, 6): J' of what may be wrong with all pixels together, in standard deviations.  Without it
+    the ``gradient`` (M, 6) of poses (M, 3, 3), (M, 3) would be so much greater."""
     if sighting.lean_px is None:
-        return np.zeros((len(R), 6))
+        return np.zeros_like(gradient)
     righted = replace(sighting, pixels=sighting.pixels - sighting.lean_px)
-    return normal_equations(righted, R, t).gradient - normal_equations(sighting, R, t).gradient
+    return normal_equations(righted, R, t).gradient - gradient
 
 
 def normal_equations(sighting: Sighting, R: Real, t: Real, sigma_px: Real | None = None) -> Normal:

@@ -70,14 +70,14 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
     normal = _normal(seen, R, t)
     if normal is None:
         return None
-    told, _, misfit = normal
+    told, gradient, misfit = normal
     off = np.concatenate([t - state.t, turn_between(state.R, R)])
     information = told + prior
     # What the pose tells of the rest.
     gain = P[:, POSE] @ prior
     left = np.linalg.inv(information) - P[POSE, POSE]
     chi_square = float(misfit + off @ prior @ off)
-    leaning = leaning_gradient(seen, R[None], t[None])[0]
+    leaning = leaning_gradient(seen, R[None], t[None], gradient[None])[0]
     drawn = np.linalg.solve(information, prior @ state.drawn[POSE] + leaning)
     drawn = state.drawn + gain @ (drawn - state.drawn[POSE])
     gained = np.linalg.slogdet(information)[1] - np.linalg.slogdet(prior)[1]

@@ -159,8 +159,8 @@ class Measure:
         sighting, poses, unsure = self._told(sighting, poses, placed, drift[k])
         if self._too_far(poses) or not self._all_belong(candidate, sighting, poses[0]):
             return None
-        known = xy[k], sighting.sigma_px, evidence, poses, unsure, amiss, lean
-        return Constellation(np.arange(len(self.view.points)), *known)
+        markers, sigma_px = np.arange(len(self.view.points)), sighting.sigma_px
+        return Constellation(markers, xy[k], sigma_px, evidence, poses, unsure, amiss, lean)
 
     def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
         """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
@@ -190,8 +190,10 @@ class Measure:
     ) -> tuple[Sighting, tuple[Estimate, ...], float]:
         """See ``weigh.told`` and ``weigh.leaning``."""
         bright = fluxes(self.frame_bgr, sighting.pixels)
-        found = told(sighting, poses, placed, drift_px, bright, self.prior, self.judged)
-        return found[0], leaning(found[0], found[1], self.prior), found[2]
+        sighting, poses, unsure = told(
+            sighting, poses, placed, drift_px, bright, self.prior, self.judged
+        )
+        return sighting, leaning(sighting, poses, self.prior), unsure
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
@@ -228,8 +230,8 @@ class Measure:
             sighting, poses, unsure = self._told(sighting, poses, placed, drift)
         if self._too_far(poses):
             return None
-        known = xy, sighting.sigma_px, evidence, poses, unsure, amiss, lean
-        return Constellation(guess.markers, *known)
+        sigma_px = sighting.sigma_px
+        return Constellation(guess.markers, xy, sigma_px, evidence, poses, unsure, amiss, lean)
 
 
 def misfit(

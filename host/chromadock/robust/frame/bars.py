@@ -21,10 +21,11 @@ Real = NDArray[np.float64]
 FOLLOWED = 0.6
 """Of that way lamps go, root mean square.  In 84 drawn approaches to three markers of the half that
 was developed on, by means of eight frames: 0.5 of a way by more than 1 % of the dock's size, 0.7 of
-one by more than 4 %, and never all of it."""
+one by more than 4 %, and never all of it.  Counted before what close lamps shine on each other was
+taken away."""
 
 
-def leaning(
+def lean_by_bars(
     frame_bgr: NDArray[np.uint8], xy: Real, width_px: Real, give: Real, weights: NDArray[np.float32]
 ) -> Real:
     """(n, 2) pixels, one standard error of all lamps together: FOLLOWED of what bars as bright as

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from chromadock._native import ffi, lib
 from chromadock.native import doubles
-from chromadock.robust.frame.bars import leaning
+from chromadock.robust.frame.bars import lean_by_bars
 from chromadock.robust.frame.layout import FINE_CELL
 from chromadock.robust.frame.overexposure import clipped_at, have_cores
 from chromadock.robust.frame.response import Response, linear
@@ -153,7 +153,7 @@ def refined(
     places = np.array([tops.xy[0] for tops in tops_of])
     if not overexposed or not have_cores(frame_bgr, places).any():
         width, give = np.array([(tops.width[0], tops.give[0]) for tops in tops_of]).T
-        leans = leaning(frame_bgr, places, width, give, weights)
+        leans = lean_by_bars(frame_bgr, places, width, give, weights)
         return [replace(tops, lean=lean) for tops, lean in zip(tops_of, leans, strict=True)]
     room = by_spacing[0][1] / 2
     cores = [_by_core(tops, *least[lamp], step, room) for lamp, tops in enumerate(tops_of)]

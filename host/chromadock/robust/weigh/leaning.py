@@ -20,9 +20,9 @@ def leaning(
     if sighting.lean_px is None:
         return poses
     R, t = np.array([pose.R for pose in poses]), np.array([pose.t for pose in poses])
-    information = normal_equations(sighting, R, t).information
+    information, gradient, _, _ = normal_equations(sighting, R, t)
     # Places hardly tell a far dock's tilt: what they would make of it is not believed.
     information[:, 3:, 3:] += prior.R_information
-    gradient = leaning_gradient(sighting, R, t)
-    off = np.linalg.solve(information, gradient[..., None])[..., 0]
+    more = leaning_gradient(sighting, R, t, gradient)
+    off = np.linalg.solve(information, more[..., None])[..., 0]
     return tuple(pose.drawn(step) for pose, step in zip(poses, off, strict=True))

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from patience import PATIENCE_S
 from pymavlink.dialects.v20 import common as mavlink
 
 SYSTEM, COMPONENT = 7, 1
@@ -55,9 +56,9 @@ class Peer:
         self.messages += self._parser.parse_buffer(self._read()) or []
         time.sleep(PERIOD_S)
 
-    def until(self, true: Callable[[], Any], timeout_s: float = 10.0) -> None:
+    def until(self, true: Callable[[], Any]) -> None:
         """Step until it is true."""
-        end = time.monotonic() + timeout_s
+        end = time.monotonic() + PATIENCE_S
         while not true():
             assert time.monotonic() < end, [str(m) for m in self.messages[-5:]]
             self.step()

@@ -9,6 +9,7 @@ import subprocess
 import sys
 
 import numpy as np
+from patience import PATIENCE_S
 
 COMMAND = [sys.executable, "-m", "chromadock", "detect"]
 
@@ -25,7 +26,11 @@ WATER = (200, 160, 40)  # BGR
 
 def detect(*arguments, cwd):
     return subprocess.run(
-        [*COMMAND, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=60
+        [*COMMAND, *map(str, arguments)],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
     )
 
 

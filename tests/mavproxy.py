@@ -10,9 +10,10 @@ import sys
 import time
 from pathlib import Path
 
+from patience import PATIENCE_S
+
 ROOT = Path(__file__).resolve().parents[1]
 MAVPROXY = ROOT / "build" / "mavproxy"
-TIMEOUT_S = 20.0
 
 
 class MavProxy:
@@ -45,7 +46,7 @@ class MavProxy:
     def expect(self, pattern: str) -> re.Match[str]:
         """Wait for it."""
         assert self.process.stdout is not None
-        end = time.monotonic() + TIMEOUT_S
+        end = time.monotonic() + PATIENCE_S
         while (found := re.search(pattern, self.said)) is None:
             assert time.monotonic() < end, f"no {pattern!r} in {self.said!r}"
             if select.select([self.process.stdout], [], [], 0.2)[0]:

@@ -19,9 +19,9 @@ import time
 
 from mavsdk import Configuration, ConnectionResult, Mavsdk
 from mavsdk.plugins.param import Param, ParamError, ProtocolVersion
+from patience import PATIENCE_S
 
 COMPONENT = 1
-TIMEOUT_S = 10.0
 
 
 def main(port: str, protocol: str, calls: str) -> None:
@@ -29,7 +29,7 @@ def main(port: str, protocol: str, calls: str) -> None:
     sdk = Mavsdk(Configuration.create_manual(245, 190, True))
     result = sdk.add_any_connection(f"tcpout://127.0.0.1:{port}")
     assert result == ConnectionResult.SUCCESS, result
-    end_s = time.monotonic() + TIMEOUT_S
+    end_s = time.monotonic() + PATIENCE_S
     while not sdk.get_systems():
         assert time.monotonic() < end_s, "no system"
         time.sleep(0.05)

@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from patience import PATIENCE_S
 from step import missing
 
 ROOT = Path(__file__).resolve().parents[1]
 PYTHON = ROOT / "build" / "ros" / "bin" / "python"
-WAIT_S = 20.0
 
 Message = dict[str, Any]
 
@@ -62,7 +62,9 @@ class Peer:
         self._process.stdin.write(json.dumps(order) + "\n")
         self._process.stdin.flush()
 
-    def wait(self, wanted: Callable[[Message], bool], seconds: float = WAIT_S) -> Message | None:
+    def wait(
+        self, wanted: Callable[[Message], bool], seconds: float = PATIENCE_S
+    ) -> Message | None:
         """The first message that comes from now on that is wanted; None where none comes."""
         end_s = time.monotonic() + seconds
         while (left_s := end_s - time.monotonic()) > 0:
@@ -108,7 +110,7 @@ class Node:
     def end(self, number: int = signal.SIGTERM) -> int:
         """Its exit status after a signal."""
         self.process.send_signal(number)
-        return self.process.wait(WAIT_S)
+        return self.process.wait(PATIENCE_S)
 
     def __enter__(self) -> Node:
         return self

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-START_TIMEOUT_S = 20.0
+START_TIMEOUT_S = 60.0
 _URL = re.compile(r"(/dev/\S+|socket://[^\s,;]+)")
 
 

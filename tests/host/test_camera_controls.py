@@ -19,6 +19,7 @@ import cv2
 import numpy as np
 import pytest
 import v4l2_camera as fake
+from patience import PATIENCE_S
 from v4l2_camera import Camera, Knob, usual
 
 from chromadock.controls.base import Control, ControlsAwayError
@@ -56,7 +57,7 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def applied(kernel: Path, camera: Camera, **wishes: Any) -> list[str]:
     """What is told of setting a camera once."""
     process = fake.started(kernel, camera.path.parent, "-c", ONCE, camera.path, json.dumps(wishes))
-    out, error = process.communicate(timeout=60)
+    out, error = process.communicate(timeout=PATIENCE_S)
     assert not error
     lines: list[str] = json.loads(out)
     return lines
@@ -296,7 +297,7 @@ def doctor(kernel: Path, camera: Camera, text: str = "") -> str:
         "    print(f.level, f.subject + ':', f.words)",
         file,
     )  # fmt: skip
-    out, error = process.communicate(timeout=60)
+    out, error = process.communicate(timeout=PATIENCE_S)
     assert not error
     return out
 

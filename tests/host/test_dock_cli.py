@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 import pytest
+from patience import PATIENCE_S
 from simulation import chromadock, running_dock
 
 from chromadock import dialect, method
@@ -322,7 +323,7 @@ def test_simulate_tells_its_port_serves_it_and_ends_when_told(process, capsys):
     port = line.removeprefix("port: ").strip()
     assert chromadock(capsys, "dock", "info", "--port", port).status == 0
     process.send_signal(signal.SIGTERM)
-    assert process.wait(3) == 143
+    assert process.wait(PATIENCE_S) == 143
     assert process.stderr.read() == ""
 
 
@@ -345,7 +346,7 @@ def test_watch_on_a_terminal_is_a_table_with_colours():
                 shown += piece
         except OSError:  # the terminal's way to say that all have left
             pass
-        assert p.wait(10) == 0, p.stderr.read()
+        assert p.wait(PATIENCE_S) == 0, p.stderr.read()
     os.close(parent)
     assert b"48;2;41;162;206m" in shown  # the water's swatch
     assert b"48;2;255;0;187m" in shown  # the marker's

@@ -20,6 +20,7 @@ import pytest
 from autopilot_peer import free_port
 from document_commands import DOCUMENTS, ROOT, commands
 from filmed_approach import CAMERA_YAML, frames
+from patience import PATIENCE_S
 from simulator import Simulator
 from web_camera import web_camera
 
@@ -227,7 +228,7 @@ def test_the_commands_of_a_document_run_in_its_order(
         )
         done = subprocess.run(
             ["bash", "-c", line],
-            cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120,
+            cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE_S,
         )  # fmt: skip
         said = done.stdout + done.stderr
         assert done.returncode == treatment.status, f"{command}\n{line}\n{said}"

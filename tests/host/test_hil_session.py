@@ -10,12 +10,12 @@ import time
 from pathlib import Path
 
 import hardware
+from patience import PATIENCE_S
 from simulator import Simulator
 
 from chromadock import dialect
 from chromadock.link.framing import FrameFinder
 
-TIMEOUT_S = 40.0
 DARK = (dialect.DOCK_LED_RAW, 0, 0, 0)
 
 
@@ -51,7 +51,7 @@ def leds_were_put_out_last(log: Path) -> bool:
 
 def wait_for_restarts(log: Path, process: subprocess.Popen[str]) -> None:
     """Into the middle of the test of five restarts."""
-    end = time.monotonic() + TIMEOUT_S
+    end = time.monotonic() + PATIENCE_S
     boot_line = b"(SW_CPU_RESET)".hex()
     while not log.is_file() or log.read_text().count(boot_line) < 2:
         assert process.poll() is None and time.monotonic() < end
@@ -60,7 +60,7 @@ def wait_for_restarts(log: Path, process: subprocess.Popen[str]) -> None:
 
 def test_a_session_that_ends_well_leaves_the_leds_dark(tmp_path: Path) -> None:
     process = suite(tmp_path, "-k", "one_channel")
-    said, _ = process.communicate(timeout=TIMEOUT_S)
+    said, _ = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0, said
     assert "3 passed" in said
     assert leds_were_put_out_last(tmp_path / "simulator-wire.log")
@@ -71,14 +71,14 @@ def test_a_session_that_is_stopped_leaves_the_leds_dark(tmp_path: Path) -> None:
     log = tmp_path / "simulator-wire.log"
     wait_for_restarts(log, process)
     process.send_signal(signal.SIGTERM)
-    said, _ = process.communicate(timeout=TIMEOUT_S)
+    said, _ = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 2, said
     assert leds_were_put_out_last(log)
 
 
 def test_tests_for_a_board_alone_are_named_and_not_passed(tmp_path: Path) -> None:
     process = suite(tmp_path, "-k", "watchdog", "--collect-only", "-q")
-    said, _ = process.communicate(timeout=TIMEOUT_S)
+    said, _ = process.communicate(timeout=PATIENCE_S)
     assert f"{hardware.LEFT_OUT}test_ten_seconds_without_a_reset_by_the_watchdog" in said
     assert process.returncode == 5, "pytest's status where nothing was run"
 
@@ -89,7 +89,7 @@ def test_a_port_in_use_is_one_clear_line(tmp_path: Path) -> None:
         with Path(simulator.url).open("rb", buffering=0) as other:
             fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
             process = suite(tmp_path, f"--port={simulator.url}", "-k", "heartbeats_come")
-            said, _ = process.communicate(timeout=TIMEOUT_S)
+            said, _ = process.communicate(timeout=PATIENCE_S)
     finally:
         simulator.stop()
     assert process.returncode == 2, said

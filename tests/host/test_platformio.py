@@ -11,6 +11,7 @@ import venv
 from pathlib import Path
 
 import pytest
+from patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[2]
 PIO = Path(sys.executable).with_name("pio")
@@ -20,7 +21,7 @@ needs_pio = pytest.mark.skipif(not PIO.exists(), reason="PlatformIO is not insta
 
 def pio(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [PIO, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False
+        [PIO, *arguments], cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from mavproxy import MavProxy
+from patience import PATIENCE_S
 from pymavlink import mavutil
 from simulator import Simulator
 
@@ -23,7 +24,6 @@ from chromadock.parameter_table import PARAMETERS
 ROOT = Path(__file__).resolve().parents[2]
 MAVSDK = ROOT / "build" / "mavsdk"
 CLIENT = ROOT / "tests" / "mavsdk_parameters.py"
-TIMEOUT_S = 20.0
 WHOLE = [p.name for p in PARAMETERS if step(p) == 1.0]
 """Parameters whose every value is a whole number."""
 
@@ -48,14 +48,14 @@ def ground_station(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("MAVLINK20", "1")
     device = request.getfixturevalue(f"{request.param}_dock")
     link = mavutil.mavlink_connection(device, baud=921600, dialect="common")
-    assert link.wait_heartbeat(timeout=TIMEOUT_S) is not None
+    assert link.wait_heartbeat(timeout=PATIENCE_S) is not None
     yield link
     link.close()
 
 
 def answer_about(link, name: str):
     """The next answer about one parameter."""
-    end = time.monotonic() + TIMEOUT_S
+    end = time.monotonic() + PATIENCE_S
     while time.monotonic() < end:
         answer = link.recv_match(type="PARAM_VALUE", blocking=True, timeout=1)
         if answer is not None and answer.param_id == name:
@@ -73,7 +73,7 @@ def test_mavutil_fetches_and_sets_every_parameter(ground_station) -> None:
     assert link.target_system == 50
     link.param_fetch_all()
     fetched: dict[str, float] = {}
-    end = time.monotonic() + TIMEOUT_S
+    end = time.monotonic() + PATIENCE_S
     while len(fetched) < len(PARAMETERS) and time.monotonic() < end:
         answer = link.recv_match(type="PARAM_VALUE", blocking=True, timeout=1)
         if answer is not None:
@@ -92,7 +92,7 @@ def test_mavutil_fetches_and_sets_every_parameter(ground_station) -> None:
 def test_mavutil_is_told_the_range_of_a_value_refused(ground_station) -> None:
     link = ground_station
     link.param_set_send("REPORT_HZ", 31)
-    end = time.monotonic() + TIMEOUT_S
+    end = time.monotonic() + PATIENCE_S
     while time.monotonic() < end:
         text = link.recv_match(type="STATUSTEXT", blocking=True, timeout=1)
         if text is not None and "REPORT_HZ" in text.text:
@@ -132,7 +132,7 @@ def test_mavsdk_sets_and_reads_every_parameter(tcp_dock: str, protocol: str, cal
         input=json.dumps(wanted) + "\n",
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=PATIENCE_S,
     )
     assert done.returncode == 0, done.stderr
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("[{")]

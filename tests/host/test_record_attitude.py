@@ -161,9 +161,9 @@ def dive(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 peer.roll = roll_rad(time.monotonic())
                 return len(peer.named("LANDING_TARGET")) > count
 
-            peer.until(lambda: told(30), timeout_s=60)
+            peer.until(lambda: told(30))
             run.send_signal(signal.SIGINT)
-            peer.until(lambda: told(0) and run.poll() is not None, timeout_s=20)
+            peer.until(lambda: told(0) and run.poll() is not None)
             assert run.stderr is not None and "Traceback" not in run.stderr.read()
     return folder / "dive.mcap"
 

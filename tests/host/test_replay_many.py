@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from distributed import LocalCluster
 from filmed_approach import CAMERA, CAMERA_YAML, detected, frames
+from patience import PATIENCE_S
 from simulation import chromadock
 
 from chromadock.output.recording import Recording
@@ -189,5 +190,5 @@ def test_ctrl_c_ends_it_without_a_word(dives: Path, tmp_path: Path) -> None:
         assert time.monotonic() < end and process.poll() is None
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it too
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, out, err) == (130, "", "")

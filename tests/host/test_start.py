@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from patience import PATIENCE_S
 
 import chromadock
 from chromadock import choices, detector
@@ -41,7 +42,7 @@ def loaded(program):
         capture_output=True,
         text=True,
         check=True,
-        timeout=60,
+        timeout=PATIENCE_S,
     )
     return set(done.stderr.split()), done.stdout
 

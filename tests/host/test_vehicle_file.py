@@ -11,6 +11,7 @@ import configuration
 import cv2
 import numpy as np
 import pytest
+from patience import PATIENCE_S
 
 from chromadock.errors import ChromadockError
 from chromadock.vehicle.building import camera_settings_of, mounting_of
@@ -26,7 +27,7 @@ else:
 
 def chromadock(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "chromadock", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120)
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=PATIENCE_S)
 
 
 def written(path: Path, text: str) -> Path:

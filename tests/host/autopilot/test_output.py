@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from autopilot_peer import Peer, free_port, udp_peer, waiting
 from autopilot_truth import AHEAD, BEHIND, detection, pose_at, tracked
+from patience import until
 from pymavlink.dialects.v20 import common as mavlink
 
 from chromadock import Track
@@ -328,10 +329,3 @@ def test_frames_of_a_cameras_own_clock_that_tell_their_age_need_no_word() -> Non
 def test_a_camera_behind_a_rover_needs_a_parameter_and_it_is_said() -> None:
     with output(f"udpin:127.0.0.1:{free_port()}", mounting=BEHIND) as out:
         assert len(out.told) == 1 and "PLND_ORIENT 4" in out.told[0]
-
-
-def until(true: Any, timeout_s: float = 10.0) -> None:
-    end = time.monotonic() + timeout_s
-    while not true():
-        assert time.monotonic() < end
-        time.sleep(0.02)

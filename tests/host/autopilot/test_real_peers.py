@@ -17,6 +17,7 @@ import pytest
 from autopilot_peer import Peer, free_port, waiting
 from autopilot_truth import AHEAD, detection, pose_at, tracked
 from mavproxy import MavProxy
+from patience import PATIENCE_S
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 from step import missing
@@ -27,7 +28,6 @@ from chromadock.autopilot.settings import AutopilotSettings
 ROOT = Path(__file__).resolve().parents[3]
 MAVSDK = ROOT / "build" / "mavsdk"
 BODY = (4.0, 0.5, 0.2)
-TIMEOUT_S = 20.0
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def mavsdk(port: int) -> Iterator[Mavsdk]:
 
 def heard(mavsdk: Mavsdk, out: AutopilotOutput, names: set[str]) -> tuple[dict[str, Any], set[int]]:
     """The newest message of each name, as MAVSDK decodes it, and the frames' times till then."""
-    times, end = set[int](), time.monotonic() + TIMEOUT_S
+    times, end = set[int](), time.monotonic() + PATIENCE_S
     while not mavsdk.messages:  # what is said once must not be said before it listens
         assert time.monotonic() < end
         mavsdk.read()
@@ -143,7 +143,7 @@ def test_pymavlinks_own_connection_reads_it(port: int, monkeypatch: pytest.Monke
         f"udpout:127.0.0.1:{port}", source_system=7, source_component=1, dialect="common"
     )
     with opened(port, "receiver=ardupilot-copter") as out:
-        target, end = None, time.monotonic() + TIMEOUT_S
+        target, end = None, time.monotonic() + PATIENCE_S
         while target is None and time.monotonic() < end:
             vehicle.mav.heartbeat_send(mavlink.MAV_TYPE_QUADROTOR, 3, 0, 0, 4)
             frame(out)
@@ -160,7 +160,7 @@ def router(port: int, tmp_path: Path) -> Iterator[tuple[Peer, MavProxy]]:
     folder = tmp_path / "mavproxy"
     folder.mkdir()
     with socket.create_server(("127.0.0.1", 0)) as server:
-        server.settimeout(TIMEOUT_S)
+        server.settimeout(PATIENCE_S)
         master = f"tcp:127.0.0.1:{server.getsockname()[1]}"
         console = MavProxy(master, folder, f"--out=udpout:127.0.0.1:{port}", "--mav20")
         try:
@@ -183,7 +183,7 @@ def test_mavproxy_passes_it_on_to_the_autopilot(router: tuple[Peer, MavProxy], p
             kinds = {m.get_type() for m in peer.messages if m.get_srcComponent() == 191}
             return {"LANDING_TARGET", "VISION_POSITION_ESTIMATE", "STATUSTEXT"} <= kinds
 
-        peer.until(arrived, TIMEOUT_S)
+        peer.until(arrived)
     target = peer.named("LANDING_TARGET")[-1]
     assert (target.get_srcSystem(), target.get_srcComponent()) == (7, 191)
     assert (target.x, target.y, target.z) == pytest.approx((-0.2, 0.5, 4.0), abs=1e-6)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from autopilot_peer import SYSTEM, free_port, udp_peer
+from patience import PATIENCE_S
 from pymavlink.dialects.v20 import common as mavlink
 from robust_composites import compose
 from web_camera import RANGE_M, WATER_BGR, dock_frames, same, web_camera
@@ -36,7 +37,7 @@ def test_a_vehicles_autopilot_is_told_where_the_dock_is(camera: str, tmp_path: P
             command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         ) as run,
     ):
-        peer.until(lambda: len(peer.named("LANDING_TARGET")) > 5, timeout_s=60)
+        peer.until(lambda: len(peer.named("LANDING_TARGET")) > 5)
         run.send_signal(signal.SIGINT)
         assert run.stderr is not None
         said = run.stderr.read()
@@ -61,7 +62,7 @@ def test_a_dry_run_says_what_the_autopilot_would_understand(tmp_path: Path) -> N
         *(sys.executable, "-m", "chromadock", "detect", str(tmp_path), "--fps", "10"),
         *("--dry-run", "--out", "mavlink:udpin:0.0.0.0:14555?receiver=ardupilot-rover"),
     ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S)
     assert done.returncode == 0, done.stderr
     lines = [line for line in done.stderr.splitlines() if "LANDING_TARGET" in line]
     assert len(lines) == 1  # of less than a second

@@ -13,9 +13,8 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 import urllib.request
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
@@ -24,6 +23,7 @@ from urllib.error import HTTPError
 
 from autopilot_peer import free_port
 from dockerfile import copied, exec_form, instructions, labels, runs
+from patience import PATIENCE_S, until
 from web_camera import web_camera
 
 from chromadock.output.page.blueos import service
@@ -118,14 +118,6 @@ def extension(data: Path, port: int) -> Iterator[subprocess.Popen[bytes]]:
             run.kill()
 
 
-def until(true: Callable[[], Any], timeout_s: float = 40.0) -> None:
-    """Wait until it is true."""
-    end = time.monotonic() + timeout_s
-    while not true():
-        assert time.monotonic() < end
-        time.sleep(0.2)
-
-
 def test_the_extension_answers_blueos_from_its_first_start_to_a_tracked_dock(
     tmp_path: Path,
 ) -> None:
@@ -148,5 +140,5 @@ def test_the_extension_answers_blueos_from_its_first_start_to_a_tracked_dock(
         assert told["trouble"] is None and told["recordings"][0]["name"] == "dive.mcap"
         assert healthy(port)
         run.send_signal(signal.SIGTERM)
-        assert run.wait(10) == 0
+        assert run.wait(PATIENCE_S) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"vehicle.toml", "dive.mcap"}

@@ -6,6 +6,7 @@ import subprocess
 import cv2
 import pytest
 from detect_command import CAMERA, COMMAND, detect, listed, refused, water
+from patience import PATIENCE_S
 from video_clips import cut, overwrite, patch, write_clip
 
 
@@ -168,11 +169,15 @@ def test_a_frame_of_another_size_halfway_leaves_no_overlay(folder):
 def test_usage_is_told_without_a_traceback(tmp_path):
     for arguments in ([], ["nonsense"], ["--nonsense"]):
         done = subprocess.run(
-            [*COMMAND[:3], *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60
+            [*COMMAND[:3], *arguments],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
         )
         refused(done, "chromadock --help")
     done = subprocess.run(
-        [*COMMAND[:3], "--help"], cwd=tmp_path, capture_output=True, text=True, timeout=60
+        [*COMMAND[:3], "--help"], cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE_S
     )
     assert done.returncode == 0
     assert "detect" in done.stdout

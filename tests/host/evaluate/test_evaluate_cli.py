@@ -13,6 +13,7 @@ from pathlib import Path
 import polars as pl
 import pytest
 from distributed import LocalCluster
+from patience import PATIENCE_S
 from small_experiment import CONTENT, leave_tuned, write
 
 from chromadock.cli.evaluate import evaluate as command
@@ -58,7 +59,7 @@ def test_ctrl_c_is_a_line_and_what_is_done_is_kept(tmp_path: Path) -> None:
     )
     wait_for(lambda: parts.is_dir() and any(parts.glob("[!.]*")))
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: the workers get it too
-    _, told = process.communicate(timeout=60)
+    _, told = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 130
     assert told == (
         "chromadock: interrupted: what is done is kept in out; "

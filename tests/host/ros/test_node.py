@@ -18,7 +18,8 @@ import cv2
 import numpy as np
 import pytest
 import yaml
-from ros_processes import PYTHON, WAIT_S, Message, Node, Peer, environment, running, stamp_ns
+from patience import PATIENCE_S
+from ros_processes import PYTHON, Message, Node, Peer, environment, running, stamp_ns
 from simulation import chromadock
 
 from chromadock import CameraModel, Detector, DockGeometry
@@ -99,7 +100,7 @@ def play(peer: Peer, dive: Dive, **more: Any) -> None:
         peer.publish(dive.order(k, **more))
         # Without a pose nothing tells that a picture was looked at: on a busy computer the next one
         # would take its place.
-        came = posed(peer, stamp, WAIT_S if locked else 3.0 if k >= dive.locked else 1.0)
+        came = posed(peer, stamp, PATIENCE_S if locked else 3.0 if k >= dive.locked else 1.0)
         # The first picture may be taken before its CameraInfo, and one may be dropped.
         assert came or (not locked and k <= dive.locked + 2), f"no pose of frame {k}"
         assert not came or k >= dive.locked, f"a pose of frame {k}"
@@ -266,7 +267,7 @@ def test_the_commands_of_the_page_run(tmp_path: Path, capsys: pytest.CaptureFixt
             (tmp_path / str(k)).mkdir()
             node = Node(tmp_path / str(k), *(beside.get(word, word) for word in words))
             nodes.append(stack.enter_context(node))
-        end_s = time.monotonic() + WAIT_S
+        end_s = time.monotonic() + PATIENCE_S
         for node in nodes:
             while "looking for the dock in the pictures on /" not in node.said:
                 assert node.process.poll() is None and time.monotonic() < end_s, node.said
@@ -283,7 +284,7 @@ def test_the_commands_of_the_page_run(tmp_path: Path, capsys: pytest.CaptureFixt
 )
 def test_a_slip_in_the_arguments_is_a_line(arguments: list[str], line: str, tmp_path: Path) -> None:
     with Node(tmp_path, "--ros-args", *arguments) as node:
-        assert node.process.wait(WAIT_S) == 2
+        assert node.process.wait(PATIENCE_S) == 2
     assert node.said.count("chromadock: error: ") == 1 and line in node.said
     assert "Traceback" not in node.said
 

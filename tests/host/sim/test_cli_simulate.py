@@ -14,6 +14,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from patience import PATIENCE_S
 from simulation import chromadock
 from small_scene import small_camera
 
@@ -206,12 +207,12 @@ def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path, camera, out, sig
         start_new_session=True,
     )
     try:
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + PATIENCE_S
         while time.monotonic() < deadline and not written(tmp_path):
             time.sleep(0.05)
         assert written(tmp_path)
         run.send_signal(sign)
-        run.wait(20)
+        run.wait(PATIENCE_S)
         while time.monotonic() < deadline and in_session(run.pid):
             time.sleep(0.05)
         assert not in_session(run.pid), "processes of the killed run are left"

@@ -11,11 +11,11 @@ from soak_truth import Truth, write_frames
 from chromadock.colour.marker import RollingHue
 from chromadock_firmware import Settings, ffi, lib
 
-SECONDS = 15
+SECONDS = 8
 REPORT_MS = 40
 
 
-def test_fifteen_seconds_on_a_bad_line(tmp_path: Path, record_property: Any) -> None:
+def test_eight_seconds_on_a_bad_line(tmp_path: Path, record_property: Any) -> None:
     run = soak.Soak(tmp_path, SECONDS, seed=1)
     run.run()
     for line in run.figures():

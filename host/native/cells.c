@@ -108,19 +108,6 @@ WIDE_VECTORS void cells_shrink(image_t in, image_t out, float *restrict sums)
     }
 }
 
-/* As cells_place(), where a step is n over m. */
-static inline place_t place_of(int i, float step, int n)
-{
-    const float at = greater(((float)i + 0.5F) * step - 0.5F, 0.0F);
-    const int before = least((int)at, n - 1);
-    return (place_t){before, least(before + 1, n - 1), at - (float)before};
-}
-
-place_t cells_place(int i, int m, int n)
-{
-    return place_of(i, (float)n / (float)m, n);
-}
-
 WIDE_VECTORS void cells_draw_out(image_t in, image_t out,
                                  float *restrict shares)
 {

@@ -68,33 +68,6 @@ static void draw_all_out(work_t *work, int wide, int images)
     cells_draw_out(coarse, drawn, work->shares);
 }
 
-/* The light that each cell adds to that of the water about it. */
-WIDE_VECTORS static void take_surround_away(work_t *work, int wide)
-{
-    const image_t whole = work->snr;
-    for (int c = 0; c < 3; c++)
-        cells_shrink(work->coarser[c], parts_of(work->coarse, whole, wide, c),
-                     work->shares);
-    draw_all_out(work, wide, 3);
-    for (int c = 0; c < 3; c++) {
-        const image_t drawn = drawn_out(work->drawn, whole, wide, c);
-        for (int y = 0; y < whole.rows; y++) {
-            const place_t p = cells_place(y, whole.rows, drawn.rows);
-            const float *restrict above = row_of(drawn, p.before);
-            const float *restrict below = row_of(drawn, p.after);
-            const float *restrict light = row_of(work->light[c], y);
-            float *restrict added = row_of(work->added[c], y);
-            int high = 0;
-            for (int x = 0; x < whole.columns; x++) {
-                added[x] =
-                    light[x] - (above[x] + p.share * (below[x] - above[x]));
-                high |= light[x] >= (float)FRONT_CLIPPED_LIGHT;
-            }
-            work->clipped[y] |= high != 0;
-        }
-    }
-}
-
 /* The light that a row adds, and the least weights that count in its cells. */
 typedef struct {
     const float *blue, *green, *red;
@@ -124,6 +97,65 @@ static inline float answer_at(const row_t *row, int x, bool any_clipped,
                     row->blue[x], row->green[x], row->red[x]);
 }
 
+/* The light that each cell of a row adds to that of the water about it, which
+ * is between those of two rows of surrounds. */
+static inline void add_row(work_t *work, int wide, int y)
+{
+    const int columns = work->snr.columns;
+    const place_t p =
+        cells_place(y, work->snr.rows, parts(work->snr.rows, wide));
+    int high = 0;
+    for (int c = 0; c < 3; c++) {
+        const image_t drawn = drawn_out(work->drawn, work->snr, wide, c);
+        const float *restrict above = row_of(drawn, p.before);
+        const float *restrict below = row_of(drawn, p.after);
+        const float *restrict light = row_of(work->light[c], y);
+        float *restrict added = row_of(work->added[c], y);
+        for (int x = 0; x < columns; x++) {
+            added[x] = light[x] - (above[x] + p.share * (below[x] - above[x]));
+            high |= light[x] >= (float)FRONT_CLIPPED_LIGHT;
+        }
+    }
+    work->clipped[y] = high != 0;
+}
+
+/* What one filter answers to a row, in the row of its signal to noise. */
+static inline void answer_row(work_t *work, int y, const float weights[3])
+{
+    const row_t row = added_row(work, y);
+    float *restrict answers = row_of(work->snr, y);
+    if (work->clipped[y]) {
+        for (int x = 0; x < work->snr.columns; x++)
+            answers[x] = answer_at(&row, x, true, weights);
+    } else {
+        for (int x = 0; x < work->snr.columns; x++)
+            answers[x] = answer_at(&row, x, false, weights);
+    }
+}
+
+/* The light that all cells add, and what the filter answers if it is one. */
+WIDE_VECTORS static void take_surround_away(work_t *work, int wide,
+                                            const float (*weights)[3])
+{
+    for (int c = 0; c < 3; c++)
+        cells_shrink(work->coarser[c],
+                     parts_of(work->coarse, work->snr, wide, c), work->shares);
+    draw_all_out(work, wide, 3);
+    for (int y = 0; y < work->snr.rows; y++) {
+        add_row(work, wide, y);
+        if (work->hues == 1)
+            answer_row(work, y, weights[0]);
+    }
+}
+
+/* Adds a share of the sizes of a row of answers to sums. */
+static inline void add_sizes_of(const float *restrict answers, int columns,
+                                float share, float *restrict sums)
+{
+    for (int x = 0; x < columns; x++)
+        sums[x] += share * fabsf(answers[x]);
+}
+
 /* Adds a share of the size of what a filter answers to a row to sums. */
 static inline void add_sizes(const row_t *row, int columns, bool any_clipped,
                              const float weights[3], float share,
@@ -145,6 +177,10 @@ WIDE_VECTORS static void measure_noise(work_t *work, const float (*weights)[3])
         memset(work->sums, 0, (size_t)(work->hues * columns) * sizeof(float));
         for (int y = span.first; y <= span.last; y++) {
             const float share = cells_share(&span, y);
+            if (work->hues == 1) {
+                add_sizes_of(row_of(whole, y), columns, share, work->sums);
+                continue;
+            }
             const row_t row = added_row(work, y);
             for (int hue = 0; hue < work->hues; hue++) {
                 float *sums = work->sums + hue * columns;
@@ -184,18 +220,27 @@ typedef struct {
     float share;
 } noise_t;
 
+/* The answers of one filter to a row over their noise. */
+static inline void over_noise(float *restrict answers, int columns,
+                              const noise_t *noise)
+{
+    for (int x = 0; x < columns; x++)
+        answers[x] /= noise->above[x] +
+                      noise->share * (noise->below[x] - noise->above[x]);
+}
+
 /* The largest of the filters' answers to a row over their noise, and whose it
  * is. */
 static inline void keep_row(const row_t *row, int columns, bool any_clipped,
-                            int hues, const float (*weights)[3],
-                            const noise_t *noise, float unexpected,
-                            float *restrict snr, int *restrict which)
+                            const float (*weights)[3], const noise_t *noise,
+                            float unexpected, float *restrict snr,
+                            int *restrict which)
 {
     for (int x = 0; x < columns; x++) {
         float largest = 0;
         int whose = 0;
 #pragma GCC unroll 6
-        for (int hue = 0; hue < hues; hue++) {
+        for (int hue = 0; hue < FRONT_HUES; hue++) {
             const float above = noise->above[hue * noise->apart + x];
             const float below = noise->below[hue * noise->apart + x];
             const float own = answer_at(row, x, any_clipped, weights[hue]) /
@@ -223,18 +268,20 @@ WIDE_VECTORS static void keep_largest(work_t *work, const float (*weights)[3],
         const place_t p = cells_place(y, whole.rows, drawn.rows);
         const noise_t noise = {row_of(drawn, p.before), row_of(drawn, p.after),
                                drawn.rows * columns, p.share};
-        const row_t row = added_row(work, y);
         float *snr = row_of(whole, y);
         uint8_t *restrict best = work->best + y * whole.stride;
-        if (work->hues == 1)
-            keep_row(&row, columns, work->clipped[y], 1, weights, &noise,
-                     unexpected, snr, work->which);
-        else if (work->clipped[y])
-            keep_row(&row, columns, true, FRONT_HUES, weights, &noise,
-                     unexpected, snr, work->which);
+        if (work->hues == 1) {
+            over_noise(snr, columns, &noise);
+            memset(best, 0, (size_t)columns);
+            continue;
+        }
+        const row_t row = added_row(work, y);
+        if (work->clipped[y])
+            keep_row(&row, columns, true, weights, &noise, unexpected, snr,
+                     work->which);
         else
-            keep_row(&row, columns, false, FRONT_HUES, weights, &noise,
-                     unexpected, snr, work->which);
+            keep_row(&row, columns, false, weights, &noise, unexpected, snr,
+                     work->which);
         const int *restrict which = work->which;
         for (int x = 0; x < columns; x++)
             best[x] = (uint8_t)which[x];
@@ -282,7 +329,7 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
         work.which = which;
         work.clipped = clipped;
         const float (*weights)[3] = (const float (*)[3])frame->weights;
-        take_surround_away(&work, wide);
+        take_surround_away(&work, wide, weights);
         measure_noise(&work, weights);
         keep_largest(&work, weights, unexpected);
         cells_repeat_outermost(layout, frame->snr, scale);

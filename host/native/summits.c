@@ -57,12 +57,10 @@ static inline int list_above(const float *restrict cells, int n, float limit,
     for (int first = 0; first < BATCH; first += AT_ONCE) {
         uint64_t any;
         memcpy(&any, is_above + first, sizeof(any));
-        if (any == 0)
-            continue;
-        for (int x = first; x < first + AT_ONCE; x++) {
-            above[count] = x;
-            count += is_above[x];
-        }
+        /* The first byte is the lowest on every processor that this is built
+         * for. */
+        for (; any != 0; any &= any - 1)
+            above[count++] = first + __builtin_ctzll(any) / 8;
     }
     return count;
 }

@@ -117,10 +117,21 @@ typedef struct {
     float share; /* of the one after it */
 } place_t;
 
+/* As cells_place(), where a step is n over m. */
+static inline place_t place_of(int i, float step, int n)
+{
+    const float at = greater(((float)i + 0.5F) * step - 0.5F, 0.0F);
+    const int before = least((int)at, n - 1);
+    return (place_t){before, least(before + 1, n - 1), at - (float)before};
+}
+
 /* Where the i-th of m places is between n samples that are spread as evenly
  * over the same length; before the first and beyond the last there is nothing.
  */
-place_t cells_place(int i, int m, int n);
+static inline place_t cells_place(int i, int m, int n)
+{
+    return place_of(i, (float)n / (float)m, n);
+}
 
 /* Draws each row of a small image out linearly to the columns of a larger one
  * with as many rows.  shares: room for one number for each of those columns. */

@@ -61,12 +61,12 @@ class Found:
     5 % of the range: no pose), ``partial`` (all markers but one, about where a prior has them or
     where ``incomplete`` allows it) or ``not_found``; ``passed_fraction`` the share of the frame
     that stands out in the markers' colour; ``pose`` the better one, with its alternative.
-    ``sigma_px``: standard deviations of the markers' places, in their order; ``lean_px``: what may
-    be wrong with all of them together, see ``Sighting``, empty where nothing is; ``estimates``:
-    both poses, with their information; all for a track.  ``evidence``: decades by which
-    the dock explains what was seen better than clutter does; None where a method does not
-    weigh it.  ``hue`` 0..1535: of the light that the markers add, as received; ``clipped``,
-    ``stops_over`` and ``misfit``: see ``Detection``.
+    ``sigma_px``: standard deviations of the markers' places, in their order; ``smaller``: by
+    which share of its size all of them together may make the dock look smaller than it is, one
+    standard error; ``estimates``: both poses, with their information; all for a track.
+    ``evidence``: decades by which the dock explains what was seen better than clutter does; None
+    where a method does not weigh it.  ``hue`` 0..1535: of the light that the markers add, as
+    received; ``clipped``, ``stops_over`` and ``misfit``: see ``Detection``.
     """
 
     state: str
@@ -81,7 +81,7 @@ class Found:
     stops_over: float | None = None
     misfit: Misfit | None = None
     sigma_px: tuple[float, ...] = ()
-    lean_px: tuple[Point, ...] = ()
+    smaller: float = 0.0
 
 
 class Method(Protocol):

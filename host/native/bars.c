@@ -3,6 +3,7 @@
 #include "internal/pixels.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 enum { ACROSS = 2 * BARS_REACH * BARS_PER_WIDTH + 1 };
@@ -94,6 +95,25 @@ static double slope_along(const picture_t *picture, const double *from,
     return fmax(middle_of(along), 0);
 }
 
+/* Whether a bar from one of the lamps to another ends at a third before, which
+ * stands in what is looked at: then it is that one's bar. */
+static bool is_crossed(int32_t count, const double *places, ptrdiff_t i,
+                       ptrdiff_t j, double reach)
+{
+    const double *from = places + 2 * i, *to = places + 2 * j;
+    const double x = to[0] - from[0], y = to[1] - from[1];
+    const double far = hypot(x, y);
+    for (ptrdiff_t k = 0; k < count; k++) {
+        const double u = places[2 * k] - from[0];
+        const double v = places[2 * k + 1] - from[1];
+        const double way = (u * x + v * y) / far;
+        if (k != i && k != j && way > 0 && way < far &&
+            fabs(u * y - v * x) / far < reach)
+            return true;
+    }
+    return false;
+}
+
 void bars_slopes(const uint8_t *bgr, int32_t height, int32_t width,
                  const float *linear, const float *weights, int32_t count,
                  const double *places, const double *widths, double *slopes)
@@ -108,7 +128,8 @@ void bars_slopes(const uint8_t *bgr, int32_t height, int32_t width,
             const double step[] = {places[2 * j] - from[0],
                                    places[2 * j + 1] - from[1]};
             const double far = hypot(step[0], step[1]);
-            if (!(far > 0))
+            if (!(far > 0) ||
+                is_crossed(count, places, i, j, BARS_REACH * widths[i]))
                 continue;
             const double stride = widths[i] / BARS_PER_WIDTH / far;
             const double side[] = {-stride * step[1], stride * step[0]};

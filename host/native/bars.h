@@ -10,8 +10,8 @@
 
 /* Places on the way from one lamp to another that are looked at, evenly over
  * its middle, from this share of the way to what is left of it: there a lamp's
- * own halo is faint. What crosses the way, or stands on it as a lamp does, is
- * no bar: the median of all counts. */
+ * own halo is faint. What crosses the way is no bar: the median of all
+ * counts. */
 #define BARS_ALONG 16
 #define BARS_FROM 0.3
 
@@ -26,7 +26,8 @@
 /* The slope of the light at each lamp, smoothed by a difference of Gaussians,
  * that bars would make which lead from it to others, end there, and are as
  * bright as the middle of the way, but for what the lamps themselves shine on
- * it: as much as on the first one's other side.  What is dark makes none.
+ * it: as much as on the first one's other side. What is dark makes none. Of
+ * lamps in a row each has its bar to the next alone.
  *
  * bgr: height x width x 3 codes. linear: the light of each of 256 codes.
  * weights: what each channel counts, BGR. places: count x 2, x and y in pixels.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -45,15 +44,6 @@ class Normal(NamedTuple):
     gradient: Real
     chi_square: Real
     seen: NDArray[np.bool_]
-
-
-def leaning_gradient(sighting: Sighting, R: Real, t: Real, gradient: Real) -> Real:
-    """(M, 6): J' of what may be wrong with all pixels together, in standard deviations.  Without it
-    the ``gradient`` (M, 6) of poses (M, 3, 3), (M, 3) would be so much greater."""
-    if sighting.lean_px is None:
-        return np.zeros_like(gradient)
-    righted = replace(sighting, pixels=sighting.pixels - sighting.lean_px)
-    return normal_equations(righted, R, t).gradient - gradient
 
 
 def normal_equations(sighting: Sighting, R: Real, t: Real, sigma_px: Real | None = None) -> Normal:

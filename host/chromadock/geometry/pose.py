@@ -98,9 +98,10 @@ class Estimate:
         back = lever(-arm)
         return replace(self, t=self.t + arm, information=back.T @ self.information @ back)
 
-    def drawn(self, off: NDArray[np.float64]) -> Estimate:
-        """The same pose, which may also be off by (6,), or by any multiple of it that is standard
-        normal."""
+    def drawn(self, smaller: float) -> Estimate:
+        """The same of a dock that may look smaller by a share of its size, one standard error: so
+        much farther it is taken for."""
+        off = np.concatenate([smaller * self.t, np.zeros(3)])
         # The inverse of a sum: Sherman and Morrison.
         told = self.information @ off
         information = self.information - np.outer(told, told) / (1 + off @ told)
@@ -123,16 +124,13 @@ class Sighting:
     """Markers and where they were seen.
 
     ``points_dock`` (N, 3) float64, metres; ``pixels`` (N, 2) float64; ``sigma_px`` (N,) float64:
-    standard deviation of each pixel, in x as in y; N >= 3.  ``lean_px`` (N, 2) float64: what may be
-    wrong with all pixels together, by the same multiple of it, which is standard normal; None where
-    nothing is.
+    standard deviation of each pixel, in x as in y; N >= 3.
     """
 
     points_dock: NDArray[np.float64]
     pixels: NDArray[np.float64]
     sigma_px: NDArray[np.float64]
     camera: CameraModel
-    lean_px: NDArray[np.float64] | None = None
 
     @property
     def native(self) -> Any:

@@ -118,7 +118,7 @@ class RobustMethod:
             clipped=float(clipped_at(frame_bgr, best.xy).mean()),
             stops_over=stops_over(frame_bgr, best.xy),
             sigma_px=tuple(best.sigma_px.tolist()),
-            lean_px=() if best.lean_px is None else tuple(map(tuple, best.lean_px.tolist())),
+            smaller=best.smaller,
         )
 
 

@@ -154,7 +154,7 @@ def _modes(state: State, sight: Sight) -> list[Fused]:
     for R, t in starts:
         if any(_is_there(mode.state, R, t) for mode in modes):
             continue
-        fused = with_markers(state, sight.markers, R, t)
+        fused = with_markers(state, sight.markers, R, t, sight.smaller)
         if fused is None or not fused.within_gate:
             continue
         if not any(same_rotation(fused.state.R, other.state.R) for other in modes):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.many import leaning_gradient, normal_equations
+from chromadock.geometry.many import normal_equations
 from chromadock.geometry.pose import Sighting
 from chromadock.track.motion import ATTITUDE, POSE, RATE, State, rotation, turn_between
 
@@ -44,13 +44,17 @@ class Fused:
         return bool(self.chi_square <= most)
 
 
-def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | None:
+def with_markers(
+    state: State, seen: Sighting, R: Floats, t: Floats, smaller: float = 0.0
+) -> Fused | None:
     """The markers of a frame: the most probable pose downhill of a start (R, t).
 
     An iterated extended Kalman filter (Bell and Cathey, IEEE Trans. Automatic Control 38
     (1993) 294) on the pixels themselves.  A pose measured in each frame alone is no
     measurement with a normal error: noise makes a plane that faces the camera look tilted, and
     the more it does the surer the tilt looks, so their mean is tilted too.
+
+    ``smaller``: see ``look.Found``; the state's place is that of the markers' centroid.
 
     None where a marker would be out of the camera's view, or nowhere near.
     """
@@ -77,8 +81,9 @@ def with_markers(state: State, seen: Sighting, R: Floats, t: Floats) -> Fused | 
     gain = P[:, POSE] @ prior
     left = np.linalg.inv(information) - P[POSE, POSE]
     chi_square = float(misfit + off @ prior @ off)
-    leaning = leaning_gradient(seen, R[None], t[None], gradient[None])[0]
-    drawn = np.linalg.solve(information, prior @ state.drawn[POSE] + leaning)
+    # A dock that looks smaller by a share is farther by that share, and as much turned as before.
+    farther = told[:, :3] @ (smaller * t)
+    drawn = np.linalg.solve(information, prior @ state.drawn[POSE] + farther)
     drawn = state.drawn + gain @ (drawn - state.drawn[POSE])
     gained = np.linalg.slogdet(information)[1] - np.linalg.slogdet(prior)[1]
     return Fused(

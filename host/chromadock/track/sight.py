@@ -28,12 +28,13 @@ MIN_OTHERS = 2
 class Sight:
     """``markers`` with their errors, and the poses that they leave open, the best first.
 
-    ``whole``: whether they are all of the dock's.
+    ``whole``: whether they are all of the dock's; ``smaller``: see ``look.Found``.
     """
 
     markers: Sighting
     poses: tuple[Estimate, ...]
     whole: bool
+    smaller: float = 0.0
 
     @classmethod
     def of(
@@ -43,10 +44,10 @@ class Sight:
         poses: Sequence[Estimate],
         dock: DockGeometry,
         camera: CameraModel,
-        lean_px: Sequence[tuple[float, float]] = (),
+        smaller: float = 0.0,
     ) -> Sight | None:
         """From what a method found: ``markers`` with standard deviations in their order;
-        ``lean_px``: as of ``look.Found``.
+        ``smaller``: as of ``look.Found``.
 
         None where the best pose has a marker out of the camera's view.
         """
@@ -62,13 +63,13 @@ class Sight:
                 np.array(list(markers.values())),
                 np.sqrt(variance + FLOOR_PX**2),
                 camera,
-                np.array(lean_px) if lean_px else None,
             ),
             tuple(
                 replace(p, chi_square=p.chi_square / widened, information=p.information / widened)
                 for p in poses
             ),
             whole=len(points) == len(dock.points),
+            smaller=smaller,
         )
 
     @property

@@ -220,7 +220,7 @@ class Tracker:
         if not plan.everywhere and (found.evidence or 0.0) < KEEP_EVIDENCE:
             return None
         poses = [pose.about(self._centre) for pose in found.estimates]
-        return Sight.of(found.markers, found.sigma_px, poses, self._dock, camera, found.lean_px)
+        return Sight.of(found.markers, found.sigma_px, poses, self._dock, camera, found.smaller)
 
 
 def _looked(memory: Memory, time_s: float, plan: Plan) -> Memory:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from chromadock.robust.frame.bars import FOLLOWED
+from chromadock.robust.frame.bars import FOLLOWED, lean_by_bars, smaller
 from chromadock.robust.frame.refine import Tops, refined
 from chromadock.robust.frame.response import respond
 
@@ -43,7 +43,7 @@ def tops(frame: np.ndarray) -> list[Tops]:
     return found
 
 
-def smaller(off: np.ndarray) -> float:
+def shrunk(off: np.ndarray) -> float:
     """By what share (3, 2) pixels make the dock smaller."""
     arms = PLACES - PLACES.mean(axis=0)
     return -float((off * arms).sum() / (arms**2).sum())
@@ -52,8 +52,8 @@ def smaller(off: np.ndarray) -> float:
 @pytest.mark.parametrize("bright", [0.5, 1.0, 2.0])
 def test_bars_draw_lamps_as_far_as_is_told(bright: float) -> None:
     found = tops(picture(bright * WHITE))
-    drawn = smaller(np.array([top.xy[0] for top in found]) - PLACES)
-    told = smaller(np.array([top.lean for top in found])) / FOLLOWED
+    drawn = shrunk(np.array([top.xy[0] for top in found]) - PLACES)
+    told = smaller(PLACES, np.array([top.lean for top in found])) / FOLLOWED
     assert drawn > 0.001
     assert 0.5 * drawn < told < 2.5 * drawn
 
@@ -87,3 +87,20 @@ def test_what_lamps_shine_on_each_other_is_no_bar() -> None:
     """Of two that are close to each other."""
     found = lamps_alone(np.array([(60.0, 80.0), (160.0, 80.0), (60.0, 91.0), (160.0, 91.0)]), 2.5)
     assert np.abs([top.lean for top in found]).max() < 0.05
+
+
+def test_the_size_alone_is_told_and_never_that_it_may_be_larger() -> None:
+    arms = PLACES - PLACES.mean(axis=0)
+    assert smaller(PLACES, -0.03 * arms) == pytest.approx(0.03 * FOLLOWED)
+    assert smaller(PLACES, 0.03 * arms) == 0.0
+    assert smaller(PLACES, np.full((3, 2), 4.0)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_no_bar_draws_a_lamp_much_farther_than_its_light_is_smoothed() -> None:
+    """Of a lamp that hardly bends the light."""
+    frame, weights = picture(2.0 * WHITE), np.ones(3, np.float32)
+    lean = lean_by_bars(frame, PLACES, np.full(3, 2.0), np.full(3, 1e4), weights)
+    assert np.linalg.norm(lean, axis=1).max() < 4 * 2.0
+    faint = lean_by_bars(frame, PLACES, np.full(3, 2.0), np.full(3, 1e-3), weights)
+    twice = lean_by_bars(frame, PLACES, np.full(3, 2.0), np.full(3, 2e-3), weights)
+    assert twice == pytest.approx(2 * faint, rel=1e-3)

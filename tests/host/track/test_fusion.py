@@ -133,7 +133,7 @@ def leaning(seen: Sight, share: float) -> Sight:
     says."""
     pixels = seen.markers.pixels
     lean = -share * (pixels - pixels.mean(axis=0))
-    return replace(seen, markers=replace(seen.markers, pixels=pixels + lean, lean_px=lean))
+    return replace(seen, markers=replace(seen.markers, pixels=pixels + lean), smaller=share)
 
 
 def test_what_all_frames_share_no_number_of_frames_makes_less() -> None:

@@ -14,6 +14,7 @@ from chromadock.results.detection import Misfit
 from chromadock.robust.find.guided import HIDDEN, Expectation, Guess
 from chromadock.robust.find.search import SearchedPeaks
 from chromadock.robust.find.view import MAX_TRIALS, PEAK_ERROR, Candidate, View
+from chromadock.robust.frame.bars import smaller
 from chromadock.robust.frame.flux import fluxes
 from chromadock.robust.frame.peaks import Peaks
 from chromadock.robust.frame.plateau import on_one_thing
@@ -27,7 +28,6 @@ from chromadock.robust.weigh.acceptance import (
     Constellation,
 )
 from chromadock.robust.weigh.evidence import PlacedPeaks
-from chromadock.robust.weigh.leaning import leaning
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
 from chromadock.robust.weigh.shape import MIN_SPACING_CELLS
 from chromadock.robust.weigh.told import fitted_again, told
@@ -139,12 +139,11 @@ class Measure:
         if tops is None:
             return None
         xy, sigma, drift = _choices(tops)
-        lean = np.array([top.lean for top in tops])
         likely = self.view.log_shape(xy, sigma, self.upright) if len(xy) > 1 else np.zeros(1)
         k = int(likely.argmax())
         if on_one_thing(self.frame_bgr, xy[k]):
             return None
-        sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera, lean)
+        sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera)
         poses = estimates(sighting)
         if not poses:
             return None
@@ -159,8 +158,10 @@ class Measure:
         sighting, poses, unsure = self._told(sighting, poses, placed, drift[k])
         if self._too_far(poses) or not self._all_belong(candidate, sighting, poses[0]):
             return None
-        markers, sigma_px = np.arange(len(self.view.points)), sighting.sigma_px
-        return Constellation(markers, xy[k], sigma_px, evidence, poses, unsure, amiss, lean)
+        drawn = smaller(xy[k], np.array([top.lean for top in tops]))
+        poses = tuple(pose.drawn(drawn) for pose in poses)
+        known = xy[k], sighting.sigma_px, evidence, poses, unsure, amiss, drawn
+        return Constellation(np.arange(len(self.view.points)), *known)
 
     def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
         """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
@@ -188,12 +189,9 @@ class Measure:
         placed: Placement,
         drift_px: NDArray[np.float64],
     ) -> tuple[Sighting, tuple[Estimate, ...], float]:
-        """See ``weigh.told`` and ``weigh.leaning``."""
+        """See ``weigh.told``."""
         bright = fluxes(self.frame_bgr, sighting.pixels)
-        sighting, poses, unsure = told(
-            sighting, poses, placed, drift_px, bright, self.prior, self.judged
-        )
-        return sighting, leaning(sighting, poses, self.prior), unsure
+        return told(sighting, poses, placed, drift_px, bright, self.prior, self.judged)
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
@@ -206,12 +204,11 @@ class Measure:
         places = found if guess.expected is None else guess.expected
         nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
         xy, sigma, drift = (np.array(values) for values in zip(*nearest, strict=True))
-        lean = np.array([top.lean for top in tops])
         # Where a track has the dock its lamps may be so near that they run into each other.
         if not priors and on_one_thing(self.frame_bgr, xy):
             return None
         points = self.view.points[guess.markers]
-        sighting = Sighting(points, xy, sigma, self.view.camera, lean)
+        sighting = Sighting(points, xy, sigma, self.view.camera)
         poses = _downhill(sighting, priors) if priors else estimates(sighting)
         if not poses:
             return None
@@ -224,14 +221,15 @@ class Measure:
         if priors:
             # About a track's pose the track says how sure the place is.
             sighting, poses, _ = fitted_again(sighting, poses, placed, drift)
-            poses = leaning(sighting, poses, self.prior)
             unsure = 0.0
         else:
             sighting, poses, unsure = self._told(sighting, poses, placed, drift)
         if self._too_far(poses):
             return None
-        sigma_px = sighting.sigma_px
-        return Constellation(guess.markers, xy, sigma_px, evidence, poses, unsure, amiss, lean)
+        drawn = smaller(xy, np.array([top.lean for top in tops]))
+        poses = tuple(pose.drawn(drawn) for pose in poses)
+        known = xy, sighting.sigma_px, evidence, poses, unsure, amiss, drawn
+        return Constellation(guess.markers, *known)
 
 
 def misfit(

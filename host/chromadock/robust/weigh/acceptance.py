@@ -52,7 +52,7 @@ class Constellation:
     ``markers`` (k,): which of the dock's; ``xy`` (k, 2) pixels; ``sigma_px`` (k,): their standard
     deviations; ``evidence``: natural log of the likelihood ratio; ``poses``: one or two, the
     better first; ``doubt``: see there; ``misfit``: where they stand like a dock, but not rigidly;
-    ``lean_px`` (k, 2): see ``Sighting``.
+    ``smaller``: see ``look.Found``.
     """
 
     markers: NDArray[np.intp]
@@ -62,7 +62,7 @@ class Constellation:
     poses: tuple[Estimate, ...]
     doubt: float = 0.0
     misfit: Misfit | None = None
-    lean_px: NDArray[np.float64] | None = None
+    smaller: float = 0.0
 
 
 class Placed(Protocol):

@@ -30,7 +30,7 @@ from chromadock.robust.weigh.acceptance import (
 from chromadock.robust.weigh.evidence import PlacedPeaks
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
 from chromadock.robust.weigh.shape import MIN_SPACING_CELLS
-from chromadock.robust.weigh.told import fitted_again, told
+from chromadock.robust.weigh.told import told
 from chromadock.robust.weigh.twin import is_image_of
 
 MISFIT_DECADES = 8.0
@@ -218,12 +218,7 @@ class Measure:
             return None
         whole = len(guess.markers) == len(self.view.points)
         amiss = misfit(evidence, poses, np.hypot(sigma, drift)) if whole else None
-        if priors:
-            # About a track's pose the track says how sure the place is.
-            sighting, poses, _ = fitted_again(sighting, poses, placed, drift)
-            unsure = 0.0
-        else:
-            sighting, poses, unsure = self._told(sighting, poses, placed, drift)
+        sighting, poses, unsure = self._told(sighting, poses, placed, drift)
         if self._too_far(poses):
             return None
         drawn = smaller(xy, np.array([top.lean for top in tops]))

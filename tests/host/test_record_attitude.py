@@ -177,7 +177,10 @@ def test_a_replay_has_the_attitudes_of_the_run_and_says_the_same(
     assert told["old"]["found"] > 25 and told["old"]["locked"] > 25
     assert (told["not_recorded"], told["state_differs"]) == (0, 0)
     assert told["only_old_locked"] == told["only_new_locked"] == 0
-    assert told["place_m"]["largest"] < 0.002  # 0.1 % of 2 m, as JPEG loses
+    # At 2 m, as JPEG loses; a frame whose lamps a wider smoothing locates says itself that its
+    # place is unsure by 0.005 m.
+    assert told["place_m"]["median"] < 0.0005
+    assert told["place_m"]["largest"] < 0.005
     assert told["attitude_deg"]["largest"] < 0.5
     lines = [json.loads(line) for line in (tmp_path / "frames.jsonl").open()]
     known = [line for line in lines if "attitude" in line]

@@ -57,8 +57,8 @@ class Look:
 class Found:
     """What a method made of one frame; markers and pose are None if no dock was found.
 
-    ``state`` is ``found``, ``uncertain`` (markers, but the dock's place may be off by more
-    than 5 % of the range: no pose), ``partial`` (all markers but one, about where a prior has them or
+    ``state`` is ``found``, ``uncertain`` (markers, but the dock's place may be off by more than 5 %
+    of the range: no pose), ``partial`` (all markers but one, about where a prior has them or
     where ``incomplete`` allows it) or ``not_found``; ``passed_fraction`` the share of the frame
     that stands out in the markers' colour; ``pose`` the better one, with its alternative.
     ``sigma_px``: standard deviations of the markers' places, in their order; ``smaller``: by

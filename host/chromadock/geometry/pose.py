@@ -99,8 +99,9 @@ class Estimate:
         return replace(self, t=self.t + arm, information=back.T @ self.information @ back)
 
     def drawn(self, smaller: float) -> Estimate:
-        """The same of a dock that may look smaller by a share of its size, one standard error: so
-        much farther it is taken for."""
+        """The same pose with one more error: the dock may look smaller than it is by a share of its
+        size, one standard error, and then is nearer by that share.  ``t`` has to be the place of
+        the markers' centroid, about which they are drawn together."""
         off = np.concatenate([smaller * self.t, np.zeros(3)])
         # The inverse of a sum: Sherman and Morrison.
         told = self.information @ off

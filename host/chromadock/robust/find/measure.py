@@ -155,13 +155,11 @@ class Measure:
             self.misfits.extend(filter(None, [amiss]))
             return None
         amiss = misfit(evidence, poses, np.hypot(sigma[k], drift[k]))
-        sighting, poses, unsure = self._told(sighting, poses, placed, drift[k])
+        sighting, poses, unsure, drawn = self._told(sighting, poses, placed, drift[k], tops)
         if self._too_far(poses) or not self._all_belong(candidate, sighting, poses[0]):
             return None
-        drawn = smaller(xy[k], np.array([top.lean for top in tops]))
-        poses = tuple(pose.drawn(drawn) for pose in poses)
-        known = xy[k], sighting.sigma_px, evidence, poses, unsure, amiss, drawn
-        return Constellation(np.arange(len(self.view.points)), *known)
+        markers, sigma_px = np.arange(len(self.view.points)), sighting.sigma_px
+        return Constellation(markers, xy[k], sigma_px, evidence, poses, unsure, amiss, drawn)
 
     def _too_far(self, poses: tuple[Estimate, ...]) -> bool:
         """Whether the likeliest pose has the markers' centroid beyond the range of a dock."""
@@ -188,10 +186,16 @@ class Measure:
         poses: tuple[Estimate, ...],
         placed: Placement,
         drift_px: NDArray[np.float64],
-    ) -> tuple[Sighting, tuple[Estimate, ...], float]:
-        """See ``weigh.told``."""
+        tops: list[Tops],
+    ) -> tuple[Sighting, tuple[Estimate, ...], float, float]:
+        """See ``weigh.told``; the poses with the error that bars may make, and that error, see
+        ``look.Found.smaller``."""
         bright = fluxes(self.frame_bgr, sighting.pixels)
-        return told(sighting, poses, placed, drift_px, bright, self.prior, self.judged)
+        sighting, poses, unsure = told(
+            sighting, poses, placed, drift_px, bright, self.prior, self.judged
+        )
+        drawn = smaller(sighting.pixels, np.array([top.lean for top in tops]))
+        return sighting, tuple(pose.drawn(drawn) for pose in poses), unsure, drawn
 
     def _partly(
         self, guess: Guess, cell: int, peaks: Peaks, priors: tuple[Estimate, ...] = ()
@@ -218,13 +222,11 @@ class Measure:
             return None
         whole = len(guess.markers) == len(self.view.points)
         amiss = misfit(evidence, poses, np.hypot(sigma, drift)) if whole else None
-        sighting, poses, unsure = self._told(sighting, poses, placed, drift)
+        sighting, poses, unsure, drawn = self._told(sighting, poses, placed, drift, tops)
         if self._too_far(poses):
             return None
-        drawn = smaller(xy, np.array([top.lean for top in tops]))
-        poses = tuple(pose.drawn(drawn) for pose in poses)
-        known = xy, sighting.sigma_px, evidence, poses, unsure, amiss, drawn
-        return Constellation(guess.markers, *known)
+        sigma_px = sighting.sigma_px
+        return Constellation(guess.markers, xy, sigma_px, evidence, poses, unsure, amiss, drawn)
 
 
 def misfit(

@@ -10,7 +10,7 @@ KEPT_S = 2.5
 """After this nothing is expected any more.  By then place is uncertain by 0.7 m: as wide as the
 dock, so that where it was says no more than a search of the whole frame finds."""
 
-MOST_DOUBT = 0.05
+MOST_DOUBT = 0.02
 """Probability that the place is off by more than 5 % of the range, beyond which a dock that was
 locked has no pose yet.  Less than for a single frame (``robust.weigh.acceptance``): what is wrong
 with one frame of a track is wrong with those after it too."""

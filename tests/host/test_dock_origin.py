@@ -55,7 +55,7 @@ def test_a_dock_is_followed_alike_wherever_its_origin_is(origin: tuple[float, ..
     pairs = zip(followed_about_the_centre(), followed(moved(shift)), strict=True)
     for k, (near, far) in enumerate(pairs):
         assert near.state == ("partial" if k == HIDDEN else "found")
-        # Three markers of one frame may not be sure of an origin far in front of them; the track is.
+        # Three markers of one frame are not sure of an origin far in front of them; the track is.
         alike = far.state == near.state
         assert alike or (k == HIDDEN and far.state == "uncertain" and far.pose is None)
         assert near.markers == far.markers

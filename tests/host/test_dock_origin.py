@@ -54,16 +54,12 @@ def test_a_dock_is_followed_alike_wherever_its_origin_is(origin: tuple[float, ..
     shift, told = np.array(origin, float), 0
     pairs = zip(followed_about_the_centre(), followed(moved(shift)), strict=True)
     for k, (near, far) in enumerate(pairs):
-        assert near.state == ("partial" if k == HIDDEN else "found")
-        # Three markers of one frame are not sure of an origin far in front of them; the track is.
-        alike = far.state == near.state
-        assert alike or (k == HIDDEN and far.state == "uncertain" and far.pose is None)
+        assert near.state == far.state == ("partial" if k == HIDDEN else "found")
         assert near.markers == far.markers
         assert far.evidence == pytest.approx(near.evidence, abs=1e-6)
         assert near.track is not None and far.track is not None
         assert near.track.state == far.track.state
-        poses = [(near.track.pose, far.track.pose), *([(near.pose, far.pose)] if alike else [])]
-        for one, other in poses:
+        for one, other in ((near.pose, far.pose), (near.track.pose, far.track.pose)):
             assert (one is None) == (other is None)
             if one is None or other is None:
                 continue

@@ -14,7 +14,7 @@ from chromadock import Detector
 from chromadock.paper import blobs
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "transdec"
-FRAMES_A_DISTANCE = 34  # each of the 17 backgrounds twice
+FRAMES_A_DISTANCE = 102  # each of the 17 backgrounds six times
 NEAR_PX = 3.0
 
 pytestmark = pytest.mark.skipif(

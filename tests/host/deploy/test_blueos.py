@@ -23,7 +23,7 @@ from urllib.error import HTTPError
 
 from autopilot_peer import free_port
 from dockerfile import copied, exec_form, instructions, labels, runs
-from patience import PATIENCE_S, until
+from patience import until
 from web_camera import web_camera
 
 from chromadock.output.page.blueos import service
@@ -140,5 +140,5 @@ def test_the_extension_answers_blueos_from_its_first_start_to_a_tracked_dock(
         assert told["trouble"] is None and told["recordings"][0]["name"] == "dive.mcap"
         assert healthy(port)
         run.send_signal(signal.SIGTERM)
-        assert run.wait(PATIENCE_S) == 0
+        assert run.wait(10) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"vehicle.toml", "dive.mcap"}

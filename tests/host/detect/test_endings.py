@@ -12,7 +12,6 @@ import termios
 import cv2
 import pytest
 from detect_command import COMMAND, detect, listed, water
-from patience import PATIENCE_S
 
 
 @pytest.fixture
@@ -36,7 +35,7 @@ def test_a_run_that_is_stopped_is_quiet_and_leaves_nothing(long_folder, signal_,
     run.stdout.readline()
     run.stdout.readline()
     run.send_signal(signal_)
-    _, complaints = run.communicate(timeout=PATIENCE_S)
+    _, complaints = run.communicate(timeout=30)
     assert run.returncode == status
     assert complaints == ""
     assert listed(long_folder) == before
@@ -52,7 +51,7 @@ def test_a_reader_that_goes_away_is_no_fault_to_talk_about(long_folder):
     run.stdout.close()
     complaints = run.stderr.read()
     run.stderr.close()
-    assert run.wait(timeout=PATIENCE_S) == 141
+    assert run.wait(timeout=30) == 141
     assert complaints == ""
     assert listed(long_folder) == before
 
@@ -75,7 +74,7 @@ def test_a_long_source_shows_its_progress_on_a_terminal_only(folder):
     except OSError:  # how a terminal says that nobody is there any more
         pass
     os.close(ours)
-    assert run.wait(timeout=PATIENCE_S) == 0
+    assert run.wait(timeout=30) == 0
     assert b"detecting" in shown
     assert b"/33" in shown
     assert b"33 frames, 0 found, 0 skipped" in shown

@@ -212,7 +212,7 @@ def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path, camera, out, sig
             time.sleep(0.05)
         assert written(tmp_path)
         run.send_signal(sign)
-        run.wait(PATIENCE_S)
+        run.wait(20)
         while time.monotonic() < deadline and in_session(run.pid):
             time.sleep(0.05)
         assert not in_session(run.pid), "processes of the killed run are left"

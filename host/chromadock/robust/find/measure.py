@@ -155,7 +155,9 @@ class Measure:
             self.misfits.extend(filter(None, [amiss]))
             return None
         amiss = misfit(evidence, poses, np.hypot(sigma[k], drift[k]))
-        sighting, poses, unsure, drawn = self._told(sighting, poses, placed, drift[k], tops)
+        sighting, poses, unsure, drawn = self._told(
+            sighting, poses, placed, drift[k], tops, self.judged
+        )
         if self._too_far(poses) or not self._all_belong(candidate, sighting, poses[0]):
             return None
         markers, sigma_px = np.arange(len(self.view.points)), sighting.sigma_px
@@ -187,12 +189,13 @@ class Measure:
         placed: Placement,
         drift_px: NDArray[np.float64],
         tops: list[Tops],
+        judged: NDArray[np.float64],
     ) -> tuple[Sighting, tuple[Estimate, ...], float, float]:
         """See ``weigh.told``; the poses with the error that bars may make, and that error, see
         ``look.Found.smaller``."""
         bright = fluxes(self.frame_bgr, sighting.pixels)
         sighting, poses, unsure = told(
-            sighting, poses, placed, drift_px, bright, self.prior, self.judged
+            sighting, poses, placed, drift_px, bright, self.prior, judged
         )
         drawn = smaller(sighting.pixels, np.array([top.lean for top in tops]))
         return sighting, tuple(pose.drawn(drawn) for pose in poses), unsure, drawn
@@ -222,7 +225,10 @@ class Measure:
             return None
         whole = len(guess.markers) == len(self.view.points)
         amiss = misfit(evidence, poses, np.hypot(sigma, drift)) if whole else None
-        sighting, poses, unsure, drawn = self._told(sighting, poses, placed, drift, tops)
+        # Where the dock's origin is from its centroid the track's attitude tells, and with a marker
+        # out better than the frame does.
+        judged = np.zeros(3) if priors else self.judged
+        sighting, poses, unsure, drawn = self._told(sighting, poses, placed, drift, tops, judged)
         if self._too_far(poses):
             return None
         sigma_px = sighting.sigma_px

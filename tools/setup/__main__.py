@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import fcntl
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import debian
 import environment
@@ -32,17 +33,18 @@ def with_lock(what: str) -> None:
     with (BUILD / "setup.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         LOG.unlink(missing_ok=True)
-        set_up_demo()
-        if what != "demo":
+        debian.require_python_and_compiler()
+        environment.make_environment()
+        if what == "demo":
+            set_up_demo()
+        else:
             set_up_tests()
         if what == "bench":
             set_up_bench()
 
 
 def set_up_demo() -> None:
-    """Make the environment with the host package and the firmware binding."""
-    debian.require_python_and_compiler()
-    environment.make_environment()
+    """Fill the environment with the host package and the firmware binding."""
     environment.install_host()
     environment.install_binding()
 
@@ -50,14 +52,22 @@ def set_up_demo() -> None:
 def set_up_tests() -> None:
     """Add the test tools; what cannot be had is reported and recorded."""
     unavailable = Unavailable()
-    environment.install_test_tools()
+    with ThreadPoolExecutor() as pool:
+        beside = pool.submit(set_up_beside, unavailable)
+        set_up_demo()
+        environment.install_test_tools()
+        native_tests.set_up(unavailable)
+        beside.result()
+    unavailable.save()
+
+
+def set_up_beside(unavailable: Unavailable) -> None:
+    """Add what lies outside the environment, and so can be installed at the same time."""
+    debian.install_test_packages(unavailable)
     environment.install_opencv4()
     environment.install_mavproxy()
     environment.install_mavsdk(unavailable)
     environment.make_ros(unavailable)
-    debian.install_test_packages(unavailable)
-    native_tests.set_up(unavailable)
-    unavailable.save()
 
 
 def set_up_bench() -> None:

@@ -28,7 +28,7 @@ def run(
         SetupError: it cannot be started, fails or takes too long.
     """
     arguments = [str(part) for part in command]
-    log(f"$ {shlex.join(arguments)}\n")
+    line = f"$ {shlex.join(arguments)}\n"
     try:
         done = subprocess.run(
             arguments,
@@ -42,10 +42,12 @@ def run(
             timeout=timeout_s,
         )
     except OSError as error:
+        log(line)
         raise SetupError(f"{what}: {error.strerror}: {arguments[0]}") from error
     except subprocess.TimeoutExpired as error:
+        log(line)
         raise SetupError(f"{what}: not finished after {timeout_s:.0f} s") from error
-    log(done.stdout)
+    log(line + done.stdout)
     if done.returncode != 0:
         reason = telling_line(done.stdout) or f"exit status {done.returncode}"
         raise SetupError(f"{what}: {reason} (see {LOG.relative_to(ROOT)})")
@@ -60,7 +62,7 @@ def telling_line(output: str) -> str:
 
 
 def log(text: str) -> None:
-    """Append to the set-up's log."""
+    """Append to the set-up's log, a command with all it said at once: others may run beside it."""
     LOG.parent.mkdir(exist_ok=True)
     with LOG.open("a") as file:
         file.write(text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import os
 import shutil
@@ -93,10 +94,28 @@ NECESSARY: tuple[tuple[str, list[str], Callable[[], bool]], ...] = (
 
 def install_test_packages(unavailable: Unavailable) -> None:
     """Install what compilers, emulator, checkers, browser and fuzzer are not there."""
+    install_together()
     install_programs(unavailable)
     if shutil.which("clang"):
         install_fuzzer(unavailable)
     install_streamer(unavailable)
+
+
+def install_together() -> None:
+    """Install all that is missing at once, which takes half the time of one after the other.
+
+    What cannot be had fails them all.  Then each is installed by itself, and named.
+    """
+    packages = missing_programs() + ([] if has_streamer() else STREAMER_PACKAGES)
+    if not packages or why_not_install() is not None:
+        return
+    with contextlib.suppress(SetupError), step(f"Debian packages: {' '.join(packages)}"):
+        install(packages)
+
+
+def missing_programs() -> list[str]:
+    """List the packages whose program is not there."""
+    return [name for name, program in TEST_PACKAGES.items() if not shutil.which(program)]
 
 
 def install_streamer(unavailable: Unavailable) -> None:
@@ -156,7 +175,7 @@ def clang_resources() -> Path:
 
 def install_programs(unavailable: Unavailable) -> None:
     """Install the packages that are known by a program."""
-    missing = [name for name, program in TEST_PACKAGES.items() if not shutil.which(program)]
+    missing = missing_programs()
     if not missing:
         return
     hindrance = why_not_install()

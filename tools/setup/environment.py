@@ -49,12 +49,12 @@ def install_host() -> None:
     with step("Python packages and the host package"):
         # First what builds the packages: they are built without isolation, so
         # that the pinned build tools are used and nothing is fetched twice.
-        pip_install("-r", requirements)
+        pip_install("-c", CONSTRAINTS, "-r", requirements)
         # setuptools would take object files of other flags or headers from there.
         shutil.rmtree(HOST / "build", ignore_errors=True)
         for extension in compiled:
             extension.unlink()
-        pip_install("--no-build-isolation", "-e", HOST)
+        pip_install("-c", CONSTRAINTS, "--no-build-isolation", "-e", HOST)
     stamp.set()
 
 
@@ -77,7 +77,7 @@ def install_test_tools() -> None:
     if stamp.fresh():
         return
     with step("test tools and PlatformIO"):
-        pip_install("-r", requirements)
+        pip_install("-c", CONSTRAINTS, "-r", requirements)
     stamp.set()
 
 
@@ -114,8 +114,7 @@ def make_ros(unavailable: Unavailable) -> None:
     try:
         with step("ROS 2 in build/ros"):
             run([sys.executable, "-m", "venv", "--clear", ROS], "python3 -m venv")
-            pip: list[str | Path] = [ROS / "bin" / "python", "-m", "pip", "install", "-q"]
-            run([*pip, "--no-deps", "-r", requirements], "pip install")
+            pip_install("--no-deps", "-r", requirements, python=ROS / "bin" / "python")
         stamp.set()
     except SetupError as error:
         shutil.rmtree(ROS, ignore_errors=True)
@@ -135,12 +134,14 @@ def install_beside(folder: Path, title: str) -> None:
         return
     with step(f"{title} in build/{folder.name}"):
         shutil.rmtree(folder, ignore_errors=True)
-        pip: list[str | Path] = [VENV_PYTHON, "-m", "pip", "install", "-q", "--no-deps"]
-        run([*pip, "--target", folder, "-r", requirements], "pip install")
+        pip_install("--no-deps", "--target", folder, "-r", requirements)
     stamp.set()
 
 
-def pip_install(*arguments: str | Path) -> None:
-    """Install into .venv, at the pinned versions."""
-    pip: list[str | Path] = [VENV_PYTHON, "-m", "pip", "install", "-q", "-c", CONSTRAINTS]
+def pip_install(*arguments: str | Path, python: Path = VENV_PYTHON) -> None:
+    """Install by an environment's pip.
+
+    Python compiles what is imported when it is; to compile all would take longer than the rest.
+    """
+    pip: list[str | Path] = [python, "-m", "pip", "install", "-q", "--no-compile"]
     run([*pip, *arguments], "pip install", environment={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})

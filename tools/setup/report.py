@@ -22,20 +22,23 @@ def running_in_ci() -> bool:
 
 def say(text: str) -> None:
     """Print one line of progress."""
-    print(f"setup: {text}", flush=True)
+    print(f"setup: {text}\n", end="", flush=True)
 
 
 @contextmanager
 def step(text: str) -> Iterator[None]:
-    """Announce a step that takes a while, and how long it took."""
-    print(f"setup: {text} ...", end="", flush=True)
+    """Announce a step that takes a while, and how long it took.
+
+    Each is a line of its own, since other steps may run at the same time.
+    """
+    say(f"{text} ...")
     start = time.monotonic()
     try:
         yield
     except BaseException:
-        print(" failed", flush=True)
+        say(f"{text}: failed")
         raise
-    print(f" {time.monotonic() - start:.0f} s", flush=True)
+    say(f"{text}: {time.monotonic() - start:.0f} s")
 
 
 class Unavailable:

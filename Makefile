@@ -4,6 +4,9 @@
 PYTHON ?= python3
 VENV := .venv/bin
 
+# Packages are installed without compiled modules, which Python writes when it first imports them.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help setup demo results test hil soak night image bench fuzz lint format generate contrast clean setup-demo setup-bench
 

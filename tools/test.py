@@ -56,7 +56,7 @@ def run_suite(command: Sequence[str | Path], report: Path) -> Outcome:
     done = subprocess.run(
         command,
         cwd=ROOT,
-        env=environment(),
+        env={**os.environ, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -72,14 +72,6 @@ def run_suite(command: Sequence[str | Path], report: Path) -> Outcome:
         outcome.failed = 1
         outcome.output += "\nno test case passed or failed: are there any?"
     return outcome
-
-
-def environment() -> dict[str, str]:
-    """Give the variables of a test runner: ours, less what would only cost time."""
-    variables = {**os.environ, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
-    # Some hundred tests start a program; without compiled files each compiles the package anew.
-    variables.pop("PYTHONDONTWRITEBYTECODE", None)
-    return variables
 
 
 def run_steps(steps: Sequence[tuple[str, Callable[[], Outcome]]]) -> Outcome:

@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.pose import same_rotation
-from chromadock.robust.weigh.acceptance import doubt
+from chromadock.robust.weigh.acceptance import PLACE_TOLERANCE, doubt
 from chromadock.track.fusion import Fused, with_attitude, with_markers, with_turn_rate
 from chromadock.track.motion import POSE, State, met, turn_between
 from chromadock.track.sight import Sight
@@ -81,6 +80,18 @@ class Bank:
         """Probability that the place of the dock's origin is off by more than 5 % of its range."""
         states = [h.state.as_told for h in self.hypotheses]
         return doubt(states, [h.weight for h in self.hypotheses])
+
+    @property
+    def elsewhere(self) -> float:
+        """Probability of the hypotheses that have the dock's origin off from where the first has
+        it by more than 5 % of its range."""
+        first = self.hypotheses[0].state.t
+        tolerance = PLACE_TOLERANCE * float(np.linalg.norm(first))
+        return sum(
+            h.weight
+            for h in self.hypotheses[1:]
+            if float(np.linalg.norm(h.state.t - first)) > tolerance
+        )
 
     def about(self, origin: Floats) -> Bank:
         """The same by a dock frame with its origin at ``origin`` (3,), metres, dock frame."""
@@ -157,8 +168,10 @@ def _modes(state: State, sight: Sight) -> list[Fused]:
         fused = with_markers(state, sight.markers, R, t, sight.smaller)
         if fused is None or not fused.within_gate:
             continue
-        if not any(same_rotation(fused.state.R, other.state.R) for other in modes):
-            modes.append(fused)
+        # Two ways to one top end a little apart, and would count it twice.
+        same = [mode for mode in modes if _distance(fused.state, mode.state) < _SAME]
+        if all(fused.log_likelihood > mode.log_likelihood for mode in same):
+            modes = [*(mode for mode in modes if mode not in same), fused]
     return modes
 
 

@@ -15,6 +15,11 @@ MOST_DOUBT = 0.02
 locked has no pose yet.  Less than for a single frame (``robust.weigh.acceptance``): what is wrong
 with one frame of a track is wrong with those after it too."""
 
+MOST_ELSEWHERE = 0.005
+"""Of that, what other poses may have that would put it elsewhere: which of several poses is the
+right one is told by little but how the vehicle moves, and the wrong one, once taken, stays for
+seconds.  Above ``bank.FORGOTTEN``, below which a pose that a frame leaves open comes back."""
+
 MOST_DOUBT_KEPT = 0.15
 """The same of one that has a pose and was just measured: with a marker out it is known less well,
 but what was right before is not suddenly elsewhere."""

@@ -22,7 +22,13 @@ from chromadock.track.memory import Locked, Memory
 from chromadock.track.motion import turning_of
 from chromadock.track.plan import Plan, full_is_due, incomplete_is_due, priors
 from chromadock.track.sight import Sight
-from chromadock.track.states import MOST_DOUBT, MOST_DOUBT_KEPT, MOST_DOUBT_UNSEEN, TRACKING_S
+from chromadock.track.states import (
+    MOST_DOUBT,
+    MOST_DOUBT_KEPT,
+    MOST_DOUBT_UNSEEN,
+    MOST_ELSEWHERE,
+    TRACKING_S,
+)
 
 KEEP_EVIDENCE = 3.0
 """Decades, of markers where the track has them: specks there would draw it away, and a frame
@@ -198,8 +204,7 @@ class Tracker:
         if after is None:
             return None
         bank, swift = after[0].doubting(sight), after[1]
-        doubt = bank.about(self._judged).doubt
-        sure = doubt <= (MOST_DOUBT_KEPT if locked.sure else MOST_DOUBT)
+        sure = _sure(bank.about(self._judged), locked.sure)
         return replace(
             memory,
             locked=Locked(bank, time_s, time_s, sight.whole, evidence, sure, swift),
@@ -286,7 +291,7 @@ def _proposed(
     )
     if not after.locked(rival):
         return replace(memory, candidates=tuple(candidates))
-    sure = after.bank.about(judged).doubt <= MOST_DOUBT
+    sure = _sure(after.bank.about(judged), False)
     return replace(
         memory,
         locked=Locked(after.bank, time_s, time_s, sight.whole, evidence, sure),
@@ -294,6 +299,16 @@ def _proposed(
         faced_s=-np.inf,
         candidates=(),
     )
+
+
+def _sure(bank: Bank, before: bool) -> bool:
+    """Whether a pose is told of a dock that was just measured, and of which one was told before or
+    not; by its bank about what it is judged by.
+
+    """
+    if before:
+        return bank.doubt <= MOST_DOUBT_KEPT
+    return bank.doubt <= MOST_DOUBT and bank.elsewhere <= MOST_ELSEWHERE
 
 
 def _share(sight: Sight, elapsed_s: float) -> float:

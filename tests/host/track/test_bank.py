@@ -13,9 +13,10 @@ from track_truth import CAMERA, DOCK, Course, Pose, pixels, rotation, sight
 from chromadock.geometry.pose import Sighting, estimates, refined
 from chromadock.mounting import Mounting
 from chromadock.track.attitude import Attitude, expected
-from chromadock.track.bank import FORGOTTEN, MAX_HYPOTHESES, Bank
+from chromadock.track.bank import FORGOTTEN, MAX_HYPOTHESES, Bank, Hypothesis
 from chromadock.track.motion import turn_between
 from chromadock.track.sight import Sight
+from chromadock.track.states import MOST_ELSEWHERE
 
 FAR_M = 5.0
 TILT_DEG = 18.0
@@ -149,6 +150,30 @@ def test_a_pose_that_was_dropped_comes_back_when_a_frame_shows_it() -> None:
     assert any(np.linalg.norm(turn_between(h.state.R, R)) < 0.1 for h in doubted.hypotheses)
     assert angle_deg(doubted, R) > 10  # doubted, not believed yet
     assert len(Bank.of(seen).doubting(seen).hypotheses) == len(Bank.of(seen).hypotheses)
+
+
+def test_the_ways_to_one_pose_count_once() -> None:
+    """Downhill from several places one comes to the same pose, but for where the steps end; three
+    markers that stand still before a vehicle that does leave their poses open."""
+    pose = rotation(2, 25, 1), np.array([0.2, 0.1, 3.0])
+    open_still = 0
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        bank = Bank.of(sight(pose, rng, DOCK.names[:3]))
+        for _ in range(40):
+            seen = sight(pose, rng, DOCK.names[:3]).worth(0.1)
+            bank = bank.after(0.1).seen(seen) or bank
+        open_still += bank.hypotheses[0].weight < 0.9
+    assert open_still >= 3
+
+
+def test_what_is_elsewhere_is_what_other_poses_have_beyond_5_percent_of_the_range() -> None:
+    first, *_ = Bank.of(sight(tilted(), np.random.default_rng(1))).hypotheses
+    for off, elsewhere in ((0.03, 0.0), (0.1, 0.2)):
+        there = replace(first.state, t=(1 + off) * first.state.t)
+        bank = Bank((Hypothesis(first.state, 0.8), Hypothesis(there, 0.2)))
+        assert bank.elsewhere == elsewhere
+    assert MOST_ELSEWHERE > FORGOTTEN
 
 
 def test_a_frame_beyond_the_gate_of_all_is_refused() -> None:

@@ -25,7 +25,14 @@ from chromadock.track.candidate import (
     PATIENT_SPAN_S,
 )
 from chromadock.track.plan import FULL_SEARCH_S, MAX_PRIORS, Plan
-from chromadock.track.states import KEPT_S, STATES, TRACKING_S, state_of
+from chromadock.track.states import (
+    KEPT_S,
+    MOST_DOUBT,
+    MOST_ELSEWHERE,
+    STATES,
+    TRACKING_S,
+    state_of,
+)
 from chromadock.track.tracker import KEEP_EVIDENCE
 
 
@@ -403,6 +410,28 @@ def test_a_pose_is_told_where_the_origin_is_not_as_sure_as_the_centroid() -> Non
             track = tracker.update(0.1 * k, tracker.plan(0.1 * k), told_now, CAMERA)
             told[name] += track.pose is not None
     assert told["marker"] < told["centroid"]
+
+
+def test_a_pose_is_told_when_hardly_any_other_place_is_left() -> None:
+    """Three markers that stand still, as does the vehicle: nothing but noise decides."""
+    three = DockGeometry(DOCK.names[:3], DOCK.points[:3])
+    still = rotation(2, 10, 1), np.array([0.2, 0.1, 3.0])
+    told = waited = 0
+    for seed in range(6):
+        tracker, rng = Tracker(three), np.random.default_rng(seed)
+        for k in range(60):
+            seen = found(still, rng, names=three.names)
+            track = tracker.update(0.1 * k, tracker.plan(0.1 * k), seen, CAMERA)
+            locked = tracker._memory.locked
+            if locked is None:
+                continue
+            bank = locked.bank.about(tracker._judged)
+            if track.pose is not None:
+                assert bank.elsewhere <= MOST_ELSEWHERE
+                told += 1
+                break
+            waited += bank.doubt <= MOST_DOUBT
+    assert told >= 3 and waited > 0
 
 
 def test_frames_that_share_their_errors_do_not_make_three_markers_sure(

@@ -22,7 +22,7 @@ MIN_MARKERS = 3
 """Fewer give no pose."""
 
 _EXCLUDED = 20.0  # chi-square: a pose that fits by so much worse is not open; e^10 to one
-_SAME_ROTATION = 1e-3  # radians, between two minima that are one
+_SAME_MINIMUM = 0.25  # squared standard deviations, between two that are one
 _LEAST_KNOWN = 1e-14  # of what is known best: less is lost in rounding
 
 
@@ -180,7 +180,7 @@ def estimates(sighting: Sighting) -> tuple[Estimate, ...]:
         return ()
     place = first.t + first.R @ centre
     second = downhill(tilted_back(first.R, place, normal=axes[2]), place)
-    if second is None or same_rotation(second.R, first.R):
+    if second is None or same_minimum(second, first):
         return (first,)
     better, worse = sorted((first, second), key=lambda estimate: estimate.chi_square)
     return (better,) if worse.chi_square > better.chi_square + _EXCLUDED else (better, worse)
@@ -192,7 +192,7 @@ def _of_three(fits: Iterable[Estimate | None]) -> tuple[Estimate, ...]:
     for pose in fits:
         if pose is None or pose.chi_square > _EXCLUDED:
             continue
-        if not any(same_rotation(pose.R, other.R) for other in found):
+        if not any(same_minimum(pose, other) for other in found):
             found.append(pose)
     return tuple(sorted(found, key=lambda pose: -float(np.trace(pose.R))))
 
@@ -220,9 +220,10 @@ def lever(arm: NDArray[np.float64]) -> NDArray[np.float64]:
     return J
 
 
-def same_rotation(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
-    """Whether two minima (3, 3) are one, up to where their search ended."""
-    return bool(np.abs(a - b).max() < _SAME_ROTATION)
+def same_minimum(a: Estimate, b: Estimate) -> bool:
+    """Whether two minima are one, up to where their searches ended: along the flat valley of a
+    pose that is hardly known these stop some way apart, within half a standard deviation."""
+    return max(a.distance(b.R, b.t), b.distance(a.R, a.t)) < _SAME_MINIMUM
 
 
 def projected(

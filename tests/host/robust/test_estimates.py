@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import combinations
+
 import cv2
 import numpy as np
 import pytest
@@ -60,7 +62,8 @@ def test_from_afar_a_plane_has_two_poses_and_a_dock_with_depth_one() -> None:
     R, t = rotation(3, 18, 2), np.array([0.4, 0.1, 5.0])
     rng = np.random.default_rng(3)
     both = [len(estimates(sighting(RECTANGLE, R, t, 0.3, rng))) for _ in range(40)]
-    assert np.mean(np.array(both) == 2) > 0.8
+    # Noise makes the others look face on, where the two are one.
+    assert np.mean(np.array(both) == 2) > 0.75
     ways = []
     for _ in range(40):
         best, *others = estimates(sighting(FIVE, R, t, 0.3, rng))
@@ -91,6 +94,18 @@ def test_a_nearly_straight_line_of_markers_always_has_a_pose(range_m: float) -> 
         poses = estimates(sighting(line, R, t, 0.2, rng))
         assert poses
         assert min(pose.distance(R, t) for pose in poses) < 30
+
+
+@pytest.mark.parametrize("points", [RECTANGLE, THREE])
+def test_one_pose_is_not_told_twice(points: np.ndarray) -> None:
+    """Of a far plane that looks face on, and of three markers, searches end in a flat valley."""
+    rng = np.random.default_rng(6)
+    for _ in range(300):
+        R = rotation(*rng.normal(0, (10, 23, 10)))
+        t = np.array([*rng.uniform(-0.2, 0.2, 2), 1.0]) * rng.uniform(0.8, 6)
+        poses = estimates(sighting(points, R, t, 0.3, rng))
+        for one, other in combinations(poses, 2):
+            assert max(one.distance(other.R, other.t), other.distance(one.R, one.t)) > 0.2
 
 
 def test_a_search_that_was_cut_short_is_no_second_pose() -> None:

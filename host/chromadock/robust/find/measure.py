@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, same_rotation
+from chromadock.geometry.pose import Estimate, Sighting, estimates, projected, same_minimum
 from chromadock.geometry.pose import refined as refined_pose
 from chromadock.results.detection import Misfit
 from chromadock.robust.find.guided import HIDDEN, Expectation, Guess
@@ -262,7 +262,7 @@ def _downhill(sighting: Sighting, priors: tuple[Estimate, ...]) -> tuple[Estimat
     found: list[Estimate] = []
     for prior in priors:
         pose = refined_pose(sighting, prior.R, prior.t)
-        if pose is not None and not any(same_rotation(pose.R, other.R) for other in found):
+        if pose is not None and not any(same_minimum(pose, other) for other in found):
             found.append(pose)
     return tuple(sorted(found, key=lambda pose: pose.chi_square)) or estimates(sighting)
 

@@ -160,18 +160,18 @@ class _Branch:
 
 def _modes(state: State, sight: Sight) -> list[Fused]:
     """What a state may become by a frame: its most probable poses, those within the gate."""
-    modes: list[Fused] = []
-    starts = [(state.R, state.t), *((p.R, p.t) for p in sight.poses)]
-    for R, t in starts:
-        if any(_is_there(mode.state, R, t) for mode in modes):
+    fits: list[Fused] = []
+    for R, t in [(state.R, state.t), *((p.R, p.t) for p in sight.poses)]:
+        if any(_is_there(fit.state, R, t) for fit in fits):
             continue
         fused = with_markers(state, sight.markers, R, t, sight.smaller)
-        if fused is None or not fused.within_gate:
-            continue
-        # Two ways to one top end a little apart, and would count it twice.
-        same = [mode for mode in modes if _distance(fused.state, mode.state) < _SAME]
-        if all(fused.log_likelihood > mode.log_likelihood for mode in same):
-            modes = [*(mode for mode in modes if mode not in same), fused]
+        if fused is not None and fused.within_gate:
+            fits.append(fused)
+    # Ways to one top end a little apart, and each would count it anew.
+    modes: list[Fused] = []
+    for fit in sorted(fits, key=lambda fit: -fit.log_likelihood):
+        if all(_distance(fit.state, mode.state) >= _SAME for mode in modes):
+            modes.append(fit)
     return modes
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import polars as pl
 from matplotlib.axes import Axes
@@ -33,11 +34,12 @@ def filter_lines(
     axes: Axes, rows: pl.DataFrame, key: str, measure: Measure, unit: float, line: str = "-"
 ) -> None:
     """``measure`` of each filter, times ``unit``, against the numbers of ``key`` in their order."""
-    for name in filters(rows):
+    used = filters(rows)
+    middle = sum(LOOKS[name].place for name in used) / max(len(used), 1)
+    for name in used:
         parts = list(rows.filter(pl.col("filter") == name).group_by(key, maintain_order=True))
-        points(
-            axes, [x for (x,), _ in parts], [measure(p) for _, p in parts], LOOKS[name], unit, line
-        )
+        look = replace(LOOKS[name], place=LOOKS[name].place - middle)
+        points(axes, [x for (x,), _ in parts], [measure(p) for _, p in parts], look, unit, line)
 
 
 def points(

@@ -25,7 +25,7 @@ class Look:
     colour: str
     mark: str
     label: str
-    place: int
+    place: float
 
 
 PLAIN = Look("black", "o", "", 0)

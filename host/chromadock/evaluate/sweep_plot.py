@@ -27,8 +27,11 @@ _LOG_FROM = 20
 _LABEL_APART = 2.5
 """Factor between two values that both have their label."""
 _COLUMN_IN = 2.6
+_HEIGHT_IN = 5.4
 _SIDE_BY_SIDE = 5
 """Settings whose names have room beside each other; those of more stand upright."""
+_CHARACTER_IN = 0.08
+"""Of a name that stands upright: room for its text of 10 points."""
 
 
 @mpl.rc_context(STYLE)
@@ -40,8 +43,10 @@ def sweep_plot(sweep: Sweep) -> Figure:
     """
     key = number_key(sweep)
     columns = _columns(sweep, key)
+    names, upright = ([], False) if key else _names(sweep)
     width = max(WIDTH_IN, _COLUMN_IN * len(columns))
-    figure = Figure(figsize=(width, 5.4), layout="constrained")
+    height = _HEIGHT_IN + (_CHARACTER_IN * max(map(len, names)) if upright else 0)
+    figure = Figure(figsize=(width, height), layout="constrained")
     grid = figure.subplots(2, len(columns), sharex="col", sharey="row", squeeze=False)
     line = "none" if key is None else "-"
     highest = 1.0
@@ -53,7 +58,9 @@ def sweep_plot(sweep: Sweep) -> Figure:
         upper.set_title(title, fontsize=9, fontweight="normal")
         upper.grid(axis="y")
         if key is None:
-            _name_settings(lower, sweep)
+            lower.set_xticks(range(len(names)), names, rotation=90 if upright else 0)
+            lower.set_xlim(-0.6, len(names) - 0.4)
+            lower.set_xlabel("\n".join(sweep.keys))
         else:
             _number_axis(lower, rows[X])
             lower.set_xlabel(key)
@@ -97,14 +104,11 @@ def settings(rows: pl.DataFrame, keys: Sequence[str]) -> list[tuple[str, ...]]:
     return [tuple(str(value) for value in row) for row in rows.select(keys).iter_rows()]
 
 
-def _name_settings(axes: Axes, sweep: Sweep) -> None:
+def _names(sweep: Sweep) -> tuple[list[str], bool]:
+    """Of all settings, and whether they are so many that their names stand upright."""
     every = list(dict.fromkeys(settings(sweep.frames, sweep.keys)))
-    crowded = len(every) > _SIDE_BY_SIDE
-    between, turned = (", ", 90) if crowded else ("\n", 0)
-    names = [between.join(setting) for setting in every]
-    axes.set_xticks(range(len(every)), names, rotation=turned)
-    axes.set_xlim(-0.6, len(every) - 0.4)
-    axes.set_xlabel("\n".join(sweep.keys))
+    upright = len(every) > _SIDE_BY_SIDE
+    return [(", " if upright else "\n").join(setting) for setting in every], upright
 
 
 def _spaced(numbers: NDArray[np.float64]) -> list[str]:

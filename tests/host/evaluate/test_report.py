@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import statistics
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -252,6 +253,29 @@ def test_many_settings_without_numbers_stand_upright_also_where_none_has_a_hue(
     hueless = many.frames.with_columns(hue_disagreement_deg=pl.lit(None, pl.Float64))
     names = figures.sweep_plot(replace(many, frames=hueless)).axes[1].get_xticklabels()
     assert [name.get_text() for name in names][:2] == ["quay, noon", "pond, noon"]
+
+
+def test_long_names_of_settings_have_their_room(evaluation: Evaluation) -> None:
+    """Where there is none, matplotlib warns, and cuts them off."""
+    many = evaluation.sweeps[2]
+    long = many.frames.with_columns(condition=pl.col("condition") + pl.lit(" and long" * 7))
+    figure = figures.sweep_plot(replace(many, frames=long))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        style.svg(figure, "sweep")
+    names = [label.get_window_extent() for label in figure.axes[1].get_xticklabels()]
+    assert all(figure.bbox.y0 <= name.y0 for name in names)
+
+
+def test_marks_of_filters_are_about_their_place(evaluation: Evaluation) -> None:
+    """One alone is at it."""
+    sweep = evaluation.sweeps[0]
+    alone = sweep.frames.filter(pl.col("filter") == filters.FILTERS[0])
+    drawn = figures.sweep_plot(replace(sweep, frames=alone)).axes[1]
+    (line,) = [each for each in drawn.lines if each.get_marker() == style.LOOKS["robust"].mark]
+    x, y = line.get_data(orig=False)
+    at = line.get_transform().transform((x[0], y[0]))
+    assert at == pytest.approx(drawn.transData.transform((x[0], y[0])))
 
 
 def test_all_filters_have_a_colour_a_mark_and_a_label() -> None:

@@ -302,9 +302,9 @@ def _proposed(
 
 
 def _sure(bank: Bank, before: bool) -> bool:
-    """Whether a pose is told of a dock that was just measured, and of which one was told before or
-    not; by its bank about what it is judged by.
+    """Whether a pose of a dock that was just measured is told.
 
+    ``bank``: about the point that it is judged by; ``before``: whether one was told before.
     """
     if before:
         return bank.doubt <= MOST_DOUBT_KEPT

@@ -6,6 +6,7 @@ import pytest
 from simulated_bench import REBOOT, SAVE, Bench, led_limit, limit, parameter
 
 from chromadock import dialect
+from chromadock.link.commands import command_long
 from chromadock.link.framing import FrameFinder
 from chromadock.link.rgb565 import HEIGHT, WIDTH
 
@@ -157,6 +158,20 @@ def test_its_leds_go_out_for_a_frame_now_and_then_and_never_for_long(tmp_path):
             out_s, dark = out_s + bench.now_s - dark, None
     assert 0.05 < longest_s < 0.2
     assert 0 < out_s <= 0.02 * 60
+
+
+@pytest.mark.parametrize("own_light", [0.0, 0.05])
+@pytest.mark.parametrize("faults", [(), ("camera-lost@2s",)])
+def test_it_remembers_no_more_of_its_lamps_than_a_frame_takes(own_light, faults):
+    """Lamps that are set anew all the time."""
+    bench, shown = Bench(*faults, own_light=own_light).run(3), set()
+    for k in range(60):
+        raw = command_long(dialect.MAV_CMD_DOCK_LED, dialect.DOCK_LED_RAW, 4 * k, 0, 255 - k)
+        bench.send(raw).run(0.5)
+        assert bench.result() == dialect.MAV_RESULT_ACCEPTED
+        shown.add(bench.dock.duties)
+        assert len(bench.dock._own_light._driven) < 10
+    assert len(shown) > 10
 
 
 def test_without_own_light_all_frames_decide(tmp_path):

@@ -186,6 +186,7 @@ class SimulatedDock:
     def _grab(self, now_s: float) -> None:
         lost = self._lasts("camera-lost", now_s)
         exposed_s = EXPOSED * self._period_s
+        self._own_light.forget(now_s - exposed_s)
         data = None
         if not (lost or self._grab_fails):
             data = self._own_light.exposed(self._camera.frame(), now_s - exposed_s, now_s)

@@ -32,15 +32,15 @@ class OwnLight:
         if lamps != self._driven[-1][1]:
             self._driven.append((now_s, lamps))
 
-    def exposed(self, data: bytes, from_s: float, to_s: float) -> bytes:
-        """A frame of ``WIDTH`` x ``HEIGHT`` in RGB565 with the light of that time in it.
+    def forget(self, before_s: float) -> None:
+        """No frame that begins before ``before_s`` is asked for any more."""
+        while len(self._driven) > 1 and self._driven[1][0] <= before_s:
+            self._driven.popleft()
 
-        Frames must be asked for in the order of ``from_s``: what went before is forgotten.
-        """
+    def exposed(self, data: bytes, from_s: float, to_s: float) -> bytes:
+        """A frame of ``WIDTH`` x ``HEIGHT`` in RGB565 with the light of that time in it."""
         if self._share == 0:
             return data
-        while len(self._driven) > 1 and self._driven[1][0] <= from_s:
-            self._driven.popleft()
         light = np.zeros(3)
         ends = [at for at, _ in list(self._driven)[1:]] + [to_s]
         for (at, lamps), end in zip(self._driven, ends, strict=True):

@@ -218,3 +218,8 @@ def write_gallery(folder: Path, shown: list[dict[str, Any]], rng: np.random.Gene
         side = {"background": [40, 150, 190], "pure": [0, 200, 255], "marker": marker}
         swatches = {"vehicle": side, "dock": {**side, "background": [60, 140, 180]}}
         (folder / f"{name}.json").write_text(json.dumps(swatches))
+
+
+def rows_of(frames: pl.DataFrame, **wanted: object) -> list[dict[str, object]]:
+    """The rows by plain Python, the other way to each figure."""
+    return [row for row in frames.to_dicts() if all(row[k] == v for k, v in wanted.items())]

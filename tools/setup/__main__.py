@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import fcntl
+import os
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
@@ -54,10 +55,13 @@ def set_up_tests() -> None:
     unavailable = Unavailable()
     with ThreadPoolExecutor() as pool:
         beside = pool.submit(set_up_beside, unavailable)
-        set_up_demo()
-        environment.install_test_tools()
-        native_tests.set_up(unavailable)
-        beside.result()
+        try:
+            set_up_demo()
+            environment.install_test_tools()
+            native_tests.set_up(unavailable)
+            beside.result()
+        except KeyboardInterrupt:
+            os._exit(130)  # at once: leaving the pool would wait for all that is left
     unavailable.save()
 
 

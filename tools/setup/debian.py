@@ -102,7 +102,7 @@ def install_test_packages(unavailable: Unavailable) -> None:
 
 
 def install_together() -> None:
-    """Install all that is missing at once, which takes half the time of one after the other.
+    """Install all that is missing at once, which is quicker than one after the other.
 
     What cannot be had fails them all.  Then each is installed by itself, and named.
     """

@@ -43,7 +43,7 @@ def sweep_plot(sweep: Sweep) -> Figure:
     """
     key = number_key(sweep)
     columns = _columns(sweep, key)
-    names, upright = ([], False) if key else _names(sweep)
+    names, upright = _names(sweep) if key is None else ([], False)
     width = max(WIDTH_IN, _COLUMN_IN * len(columns))
     height = _HEIGHT_IN + (_CHARACTER_IN * max(map(len, names)) if upright else 0)
     figure = Figure(figsize=(width, height), layout="constrained")

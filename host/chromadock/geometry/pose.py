@@ -223,7 +223,7 @@ def lever(arm: NDArray[np.float64]) -> NDArray[np.float64]:
 def same_minimum(a: Estimate, b: Estimate) -> bool:
     """Whether two minima are one, up to where their searches ended: along the flat valley of a
     pose that is hardly known these stop some way apart, within half a standard deviation."""
-    return max(a.distance(b.R, b.t), b.distance(a.R, a.t)) < _SAME_MINIMUM
+    return a.distance(b.R, b.t) < _SAME_MINIMUM and b.distance(a.R, a.t) < _SAME_MINIMUM
 
 
 def projected(

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chromadock.robust.weigh.acceptance import PLACE_TOLERANCE, doubt
+from chromadock.robust.weigh.acceptance import doubt, share_beyond
 from chromadock.track.fusion import Fused, with_attitude, with_markers, with_turn_rate
 from chromadock.track.motion import POSE, State, met, turn_between
 from chromadock.track.sight import Sight
@@ -85,13 +85,10 @@ class Bank:
     def elsewhere(self) -> float:
         """Probability of the hypotheses that have the dock's origin off from where the first has
         it by more than 5 % of its range."""
-        first = self.hypotheses[0].state.t
-        tolerance = PLACE_TOLERANCE * float(np.linalg.norm(first))
-        return sum(
-            h.weight
-            for h in self.hypotheses[1:]
-            if float(np.linalg.norm(h.state.t - first)) > tolerance
-        )
+        t = np.array([h.state.t for h in self.hypotheses])
+        weights = np.array([h.weight for h in self.hypotheses])
+        # As if each were known exactly.
+        return share_beyond(t[0], t, np.full(len(t), 1e-9), weights)
 
     def about(self, origin: Floats) -> Bank:
         """The same by a dock frame with its origin at ``origin`` (3,), metres, dock frame."""

@@ -61,9 +61,10 @@ def test_a_lens_that_bends_is_seen_through() -> None:
 def test_from_afar_a_plane_has_two_poses_and_a_dock_with_depth_one() -> None:
     R, t = rotation(3, 18, 2), np.array([0.4, 0.1, 5.0])
     rng = np.random.default_rng(3)
-    both = [len(estimates(sighting(RECTANGLE, R, t, 0.3, rng))) for _ in range(40)]
-    # Noise makes the others look face on, where the two are one.
-    assert np.mean(np.array(both) == 2) > 0.75
+    # At 5 m noise leaves no second minimum in a third of the views.
+    far = np.array([0.4, 0.1, 7.0])
+    both = [len(estimates(sighting(RECTANGLE, R, far, 0.3, rng))) for _ in range(40)]
+    assert np.mean(np.array(both) == 2) > 0.8
     ways = []
     for _ in range(40):
         best, *others = estimates(sighting(FIVE, R, t, 0.3, rng))

@@ -3,7 +3,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from track_run import HZ, Run, Seen, nothing
 from track_truth import CAMERA, DOCK, NOTHING, Pose, approach, found, rotation
 
 from chromadock import Attitude, DockGeometry, Tracker
-from chromadock.geometry.pose import Sighting, estimates, lever
+from chromadock.geometry.pose import lever
 from chromadock.look import Found
 from chromadock.rotation import matrix_from_quaternion
 from chromadock.track.candidate import (
@@ -27,8 +26,6 @@ from chromadock.track.candidate import (
 from chromadock.track.plan import FULL_SEARCH_S, MAX_PRIORS, Plan
 from chromadock.track.states import (
     KEPT_S,
-    MOST_DOUBT,
-    MOST_ELSEWHERE,
     STATES,
     TRACKING_S,
     state_of,
@@ -381,88 +378,3 @@ def test_whatever_comes_at_whatever_time_the_track_is_sound(
             assert 0 < track.pose.weight <= 1
             spread = np.array(track.pose.covariance).reshape(6, 6)
             assert np.linalg.eigvalsh(spread).min() > 0
-
-
-def test_a_dock_whose_range_is_not_known_yet_is_locked_without_a_pose() -> None:
-    """Locked from afar, where a tenth of a pixel is several per cent of the range."""
-    run = Run()
-    far = rotation(0, 0, 0), np.array([0.2, 0.1, 30.0])
-    states = [run.frame(lambda t, p: found(far, run.rng)).state for _ in range(8)]
-    assert states[-1] == "acquiring"
-    assert run.tracker.at(run.time_s).pose is None
-    near = rotation(0, 12, 0), np.array([0.2, 0.1, 3.0])
-    run = Run()
-    states = [run.frame(lambda t, p: found(near, run.rng)).state for _ in range(8)]
-    assert states[-1] == "tracking"
-
-
-def test_a_pose_is_told_where_the_origin_is_not_as_sure_as_the_centroid() -> None:
-    """Of three markers that leave two attitudes open, far apart, the centroid is at one place and
-    a marker at two."""
-    told = {}
-    for name, shift in (("centroid", DOCK.points[:3].mean(axis=0)), ("marker", DOCK.points[1])):
-        three = DockGeometry(DOCK.names[:3], DOCK.points[:3] - shift)
-        tracker, rng, told[name] = Tracker(three), np.random.default_rng(2), 0
-        for k in range(40):
-            seen = found((rotation(0, 25), np.array([0.1, 0.0, 2.0])), rng, names=three.names)
-            poses = tuple(pose.about(shift) for pose in seen.estimates)
-            told_now = replace(seen, state="found", estimates=poses)
-            track = tracker.update(0.1 * k, tracker.plan(0.1 * k), told_now, CAMERA)
-            told[name] += track.pose is not None
-    assert told["marker"] < told["centroid"]
-
-
-def test_a_pose_is_told_when_hardly_any_other_place_is_left() -> None:
-    """Three markers that stand still, as does the vehicle: nothing but noise decides."""
-    three = DockGeometry(DOCK.names[:3], DOCK.points[:3])
-    still = rotation(2, 10, 1), np.array([0.2, 0.1, 3.0])
-    told = waited = 0
-    for seed in range(6):
-        tracker, rng = Tracker(three), np.random.default_rng(seed)
-        for k in range(60):
-            seen = found(still, rng, names=three.names)
-            track = tracker.update(0.1 * k, tracker.plan(0.1 * k), seen, CAMERA)
-            locked = tracker._memory.locked
-            if locked is None:
-                continue
-            bank = locked.bank.about(tracker._judged)
-            if track.pose is not None:
-                assert bank.elsewhere <= MOST_ELSEWHERE
-                told += 1
-                break
-            waited += bank.doubt <= MOST_DOUBT
-    assert told >= 3 and waited > 0
-
-
-def test_frames_that_share_their_errors_do_not_make_three_markers_sure(
-    record_property: Any,
-) -> None:
-    """Three places fit with any error in common: after many frames the range is still unsure."""
-    three = DockGeometry(DOCK.names[:3], DOCK.points[:3])
-    R, t = rotation(5, 25), np.array([0.1, 0.0, 2.5])
-    inside = []
-    for seed in range(16):
-        rng = np.random.default_rng(seed)
-        shared = rng.normal(0, 0.3, (3, 2))
-        tracker = Tracker(three)
-        for k in range(60):
-            at = CAMERA.project(three.points @ R.T + t) + shared + rng.normal(0, 0.02, (3, 2))
-            poses = estimates(Sighting(three.points, at, np.full(3, 0.1), CAMERA))
-            markers = dict(zip(three.names, map(tuple, at.tolist()), strict=True))
-            seen = Found(
-                "found", 0.0, markers=markers, estimates=poses, evidence=9.0, sigma_px=(0.1,) * 3
-            )
-            tracker.update(0.1 * k, tracker.plan(0.1 * k), seen, CAMERA)
-        locked = tracker._memory.locked
-        assert locked is not None
-        place = t + R @ three.centre
-        states = [h.state for h in locked.bank.hypotheses]
-        square = min(
-            (s.t - place) @ np.linalg.solve(s.covariance[:3, :3], s.t - place) for s in states
-        )
-        inside.append(square < 7.81)
-    share = float(np.mean(inside))
-    record_property(
-        "figure", f"track: three markers that share their errors, the place is right in {share:.2f}"
-    )
-    assert share >= 0.8

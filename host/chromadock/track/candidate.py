@@ -36,6 +36,11 @@ so long: three pictures in a thousand of clutter had 2.5 decades when last count
 have as much again and again where a moving vehicle must see it.  Over that time vehicle and dock
 sway: it shows which marker is out."""
 
+RIVAL_FRAMES = 2
+RIVAL_EVIDENCE = 0.5
+"""So many frames with so large a share of the decades of the dock that is tracked make a candidate
+its rival: searches of whole frames see it where they do not see that dock."""
+
 GIVEN_UP_S = 0.5
 """A candidate not seen for so long is dropped: a better one begins anew."""
 
@@ -66,7 +71,7 @@ class Candidate:
     def seen(self, sight: Sight, evidence: float, time_s: float) -> Candidate | None:
         """After another frame with a dock; None where that is elsewhere."""
         bank = self.bank.after(time_s - self.time_s).seen(sight)
-        if bank is None:
+        if bank is None or bank.missed:
             return None
         best = max(self.evidence, evidence)
         return replace(
@@ -89,6 +94,10 @@ class Candidate:
         patient = self.evidence >= PATIENT_EVIDENCE and self.frames >= PATIENT_FRAMES
         long = (strong and span_s >= LOCK_SPAN_S) or (patient and span_s >= PATIENT_SPAN_S)
         return long and self.frames >= LOCK_SHARE * self.looks
+
+    def rivals(self, evidence: float) -> bool:
+        """Whether a tracked dock of that evidence, in decades, may be the wrong one of the two."""
+        return self.frames >= RIVAL_FRAMES and self.evidence >= RIVAL_EVIDENCE * evidence
 
     def given_up(self, time_s: float) -> bool:
         """Whether it was last seen too long ago."""

@@ -126,7 +126,8 @@ class Tracker:
             memory = replace(memory, last_markers=found.markers)
             after = self._followed(memory, predicted, sight, evidence, time_s, plan)
         memory = after or _unseen(memory, predicted, time_s)
-        if sight is not None and after is None and plan.everywhere:
+        measured = memory.locked is not None and memory.locked.measured_s == time_s
+        if sight is not None and not measured and plan.everywhere:
             known = [c for c in memory.candidates if evidence < c.evidence]
             if not any(sight.misnamed(self._dock, *c.pose(time_s)) for c in known):
                 memory = _proposed(memory, sight, evidence, time_s, self._judged)
@@ -179,7 +180,7 @@ class Tracker:
         time_s: float,
         plan: Plan,
     ) -> Memory | None:
-        """After the locked dock was measured; None where it was not.
+        """After a frame that is of the locked dock, or may be; None where it is not.
 
         One out of sight may be anywhere soon, and three markers of four leave open where the
         fourth would be: what is found then must speak for itself.
@@ -203,7 +204,12 @@ class Tracker:
         after = decided(predicted.bank, new, predicted.swift)
         if after is None:
             return None
-        bank, swift = after[0].doubting(sight), after[1]
+        bank, swift = after
+        if bank.missed:
+            sure = _sure(bank.about(self._judged), locked.sure)
+            unseen = replace(locked, bank=bank, time_s=time_s, swift=missed(swift), sure=sure)
+            return replace(memory, locked=unseen, faced_s=predicted.faced_s)
+        bank = bank.doubting(sight)
         sure = _sure(bank.about(self._judged), locked.sure)
         return replace(
             memory,

@@ -13,7 +13,7 @@ from track_truth import CAMERA, DOCK, Course, Pose, pixels, rotation, sight
 from chromadock.geometry.pose import Sighting, estimates, refined
 from chromadock.mounting import Mounting
 from chromadock.track.attitude import Attitude, expected
-from chromadock.track.bank import FORGOTTEN, MAX_HYPOTHESES, Bank, Hypothesis
+from chromadock.track.bank import FORGOTTEN, MAX_HYPOTHESES, REBORN, Bank, Hypothesis
 from chromadock.track.motion import turn_between
 from chromadock.track.sight import Sight
 from chromadock.track.states import MOST_ELSEWHERE
@@ -174,6 +174,23 @@ def test_what_is_elsewhere_is_what_other_poses_have_beyond_5_percent_of_the_rang
         bank = Bank((Hypothesis(first.state, 0.8), Hypothesis(there, 0.2)))
         assert bank.elsewhere == elsewhere
     assert MOST_ELSEWHERE > FORGOTTEN
+
+
+def test_what_shows_the_dock_only_where_it_hardly_can_be_is_not_believed_at_once() -> None:
+    """A hypothesis that has just come up, far from the likeliest, and a frame that it alone fits."""
+    rng = np.random.default_rng(1)
+    first = Bank.of(sight(tilted(), rng)).hypotheses[0]
+    there: Pose = (rotation(0, TILT_DEG), np.array([1.2, 0.3, FAR_M]))
+    other = Bank.of(sight(there, rng)).hypotheses[0]
+    bank = Bank((Hypothesis(first.state, 1 - REBORN), Hypothesis(other.state, REBORN)))
+    seen = [bank]
+    for _ in range(3):
+        seen.append(seen[-1].after(0.1).seen(sight(there, rng)) or seen[-1])
+    leads = [np.linalg.norm(b.hypotheses[0].state.t - there[1]) < 0.5 for b in seen]
+    assert [b.missed for b in seen[1:]] == [True, False, False]
+    assert leads == [False, False, True, True]
+    assert seen[1].hypotheses[0].weight == pytest.approx(0.5, abs=0.1)
+    assert seen[3].hypotheses[0].weight > 0.99  # if frame after frame shows it there, it is there
 
 
 def test_a_frame_beyond_the_gate_of_all_is_refused() -> None:

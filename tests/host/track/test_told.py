@@ -6,12 +6,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 from track_run import Run
-from track_truth import CAMERA, DOCK, found, rotation
+from track_truth import CAMERA, DOCK, approach, found, rotation
 
 from chromadock import DockGeometry, Tracker
 from chromadock.geometry.pose import Sighting, estimates
 from chromadock.look import Found
+from chromadock.track.bank import Bank, Hypothesis
 from chromadock.track.states import MOST_DOUBT, MOST_ELSEWHERE
 
 
@@ -98,3 +100,24 @@ def test_frames_that_share_their_errors_do_not_make_three_markers_sure(
         "figure", f"track: three markers that share their errors, the place is right in {share:.2f}"
     )
     assert share >= 0.8
+
+
+def test_a_frame_of_the_least_likely_pose_alone_is_not_told() -> None:
+    """As where a marker leaves the picture and a lamp stands near where another pose has it."""
+    run = Run()
+    run.frames(2.0, run.dock)
+    memory = run.tracker._memory
+    assert memory.locked is not None
+    first = memory.locked.bank.hypotheses[0].state
+    R, t = first.R, first.t + np.array([-1.2, 0.3, 0.0])
+    other = replace(first, R=R, t=t, velocity=np.zeros(3))
+    bank = Bank((Hypothesis(first, 0.95), Hypothesis(other, 0.05)))
+    run.tracker._memory = replace(memory, locked=replace(memory.locked, bank=bank))
+    there = R, t - R @ run.tracker._centre
+    track = run.frame(lambda time_s, plan: found(there, run.rng))
+    assert track.pose is None and track.state == "acquiring"
+    after = run.tracker._memory.locked
+    assert after is not None and after.measured_s == memory.locked.measured_s
+    track = run.frames(0.3, run.dock)[-1]
+    assert track.pose is not None  # and what was right is found again
+    assert track.pose.t == pytest.approx(approach(run.time_s - 0.1)[1], abs=0.15)

@@ -206,7 +206,26 @@ def test_a_wrong_lock_is_left_for_a_dock_that_stands_out_more(run: Run) -> None:
     tracks = run.frames(PATIENT_SPAN_S + 2, both)
     assert tracks[-1].pose is not None
     assert tracks[-1].pose.t == pytest.approx(approach(run.time_s - 1 / HZ)[1], abs=0.15)
-    assert all(t.state == "tracking" for t in tracks)
+    # From its rival's second frame on, two searches of the whole frame later, it is not told.
+    until = round((FULL_SEARCH_S + 0.2) * HZ)
+    told = [t.pose for t in tracks[until:] if t.pose is not None]
+    assert all(pose.t != pytest.approx(GHOST[1], abs=0.5) for pose in told)
+    assert len(told) >= HZ
+    assert {t.state for t in tracks} == {"tracking", "acquiring"}
+
+
+def test_what_is_seen_once_beside_a_tracked_dock_does_not_silence_it(run: Run) -> None:
+    run.frames(2.0, run.dock)
+    ghost, seen = elsewhere(GHOST), []
+
+    def once(time_s: float, plan: Plan) -> Found:
+        if plan.everywhere and not seen:
+            seen.append(time_s)
+            return ghost(time_s, plan)
+        return run.dock(time_s, plan)
+
+    assert all(t.state == "tracking" for t in run.frames(1.0, once))
+    assert seen
 
 
 def test_a_wrong_lock_is_left_at_once_for_what_is_a_dock_beyond_comparison(run: Run) -> None:

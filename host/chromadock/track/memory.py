@@ -82,7 +82,9 @@ class Memory:
         if locked is None or state not in ("tracking", "recently_lost"):
             return Track(state, time_s, age_s=age_s)
         bank = locked.after(time_s - locked.time_s)
-        rivalled = any(c.rivals(locked.evidence) and not c.given_up(time_s) for c in self.candidates)
+        rivalled = any(
+            c.rivals(locked.evidence) and not c.given_up(time_s) for c in self.candidates
+        )
         if not locked.sure or rivalled or bank.about(judged).doubt > MOST_DOUBT_UNSEEN:
             return Track("acquiring" if state == "tracking" else state, time_s, age_s=age_s)
         hypotheses = bank.about(origin).hypotheses

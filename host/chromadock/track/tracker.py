@@ -206,7 +206,7 @@ class Tracker:
             return None
         bank, swift = after
         if bank.missed:
-            sure = _sure(bank.about(self._judged), locked.sure)
+            sure = locked.sure and _sure(bank.about(self._judged), True)
             unseen = replace(locked, bank=bank, time_s=time_s, swift=missed(swift), sure=sure)
             return replace(memory, locked=unseen, faced_s=predicted.faced_s)
         bank = bank.doubting(sight)

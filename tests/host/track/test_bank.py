@@ -177,7 +177,7 @@ def test_what_is_elsewhere_is_what_other_poses_have_beyond_5_percent_of_the_rang
 
 
 def test_what_shows_the_dock_only_where_it_hardly_can_be_is_not_believed_at_once() -> None:
-    """A hypothesis that has just come up, far from the likeliest, and a frame that it alone fits."""
+    """A hypothesis that has just come up, far from the likeliest, and a frame that only it fits."""
     rng = np.random.default_rng(1)
     first = Bank.of(sight(tilted(), rng)).hypotheses[0]
     there: Pose = (rotation(0, TILT_DEG), np.array([1.2, 0.3, FAR_M]))

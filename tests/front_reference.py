@@ -19,19 +19,21 @@ from chromadock.robust.frame.layout import BORDER, Layout
 from chromadock.robust.frame.response import Response, linear
 from chromadock.toml_file import read_toml
 
-MIN_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 112, 48
+MIN_SNR, MIN_DARK_SNR, MAX_PEAKS, MAX_PROMISING = 3.0, 5.0, 112, 48
 NEIGHBOURHOOD = 0.18  # of the frame's mean side
 RING = np.array([(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)])
 
 
 @dataclass(frozen=True)
 class Scale:
-    """One scale: ``light`` and ``added`` (h, w, 3), ``snr`` and ``best`` (h, w)."""
+    """One scale: ``light`` and ``added`` (h, w, 3), ``snr`` and ``best`` (h, w); ``dark`` (h, w):
+    the largest of what the filters say less than nothing."""
 
     light: np.ndarray
     added: np.ndarray
     snr: np.ndarray
     best: np.ndarray
+    dark: np.ndarray
 
 
 def resized(image: np.ndarray, width: int, height: int) -> np.ndarray:
@@ -69,7 +71,7 @@ def scale_of(light: np.ndarray, coarser: np.ndarray, cell: int, weights: np.ndar
     wide = max(32 // cell, 4)
     added = light - cv2.resize(resized(coarser, width // wide, height // wide), (width, height))
     clipped = light.max(axis=2) >= 0.8
-    snr = []
+    snr, dark = [], []
     for hue, own in enumerate(weights):
         answer = np.where(clipped, added @ np.maximum(own, 0), added @ own)
         noise = resized(np.abs(answer), width // 8, height // 8)
@@ -77,7 +79,10 @@ def scale_of(light: np.ndarray, coarser: np.ndarray, cell: int, weights: np.ndar
         noise = cv2.GaussianBlur(np.clip(noise, 0.9 * typical, 2.5 * typical), (0, 0), 1.5)
         noise = cv2.resize(noise, (width, height)) * np.sqrt(np.pi / 2)
         snr.append(answer / noise - (0.4 if hue else 0))
-    return Scale(light, added, np.max(snr, axis=0), np.argmax(snr, axis=0))
+        dark.append(-answer / noise)
+    # One filter's is kept with its sign, of several nothing where all say more.
+    darkest = dark[0] if len(dark) == 1 else np.max([np.zeros_like(dark[0]), *dark], axis=0)
+    return Scale(light, added, np.max(snr, axis=0), np.argmax(snr, axis=0), darkest)
 
 
 def scales_of(frame: np.ndarray, response: Response) -> list[Scale]:
@@ -87,6 +92,31 @@ def scales_of(frame: np.ndarray, response: Response) -> list[Scale]:
     seen = [response.weights[:1], *[response.weights] * (len(cells) - 1)]
     coarser = [*lights[1:], lights[-1]]
     return [scale_of(*each) for each in zip(lights, coarser, cells, seen, strict=True)]
+
+
+def dark_of(scales: list[Scale], response: Response) -> list[Scale]:
+    """The same scales for what takes light away: all light counts the other way round, and a cell's
+    filter is the one that answers most to what it takes away."""
+    return [
+        Scale(
+            -scale.light,
+            -scale.added,
+            scale.dark,
+            np.argmax(-scale.added @ response.weights.T, axis=2),
+            scale.snr,
+        )
+        for scale in scales
+    ]
+
+
+def is_darker(scale: Scale, y: int, x: int, response: Response) -> bool:
+    """Whether a place takes light away by two standard deviations of a cell or more, in the channel
+    where it takes most, and by half of that from five of eight places about it."""
+    light = np.pad(scale.light, ((BORDER,) * 2, (BORDER,) * 2, (0, 0)), mode="edge")
+    less = scale.light[y, x] - around(light, y, x, 3)
+    lacks = scale.added[y, x] / np.sqrt(np.diag(response.covariance))
+    c = int(lacks.argmax())
+    return bool(lacks[c] >= 2 and (less[:, c] > 0.5 * scale.added[y, x, c]).sum() >= 5)
 
 
 @dataclass(frozen=True)
@@ -104,12 +134,15 @@ class Peak:
 
 
 def peaks_of(scales: list[Scale], response: Response) -> list[list[Peak]]:
-    """Peaks of each scale, the strongest first."""
+    """Peaks of each scale, the strongest first; of what is dark none of the finest."""
+    dark = response.sense < 0
     cells = response.layout.cells
     padded = [np.pad(s.snr, BORDER, mode="edge") for s in scales]
     tops = []
     for k, scale in enumerate(scales):
-        least = MIN_SNR * max(cells[k] / cells[1], 1)
+        if dark and k == 0:
+            continue
+        least = (MIN_DARK_SNR if dark else MIN_SNR) * max(cells[k] / cells[1], 1)
         for y, x in np.argwhere(scale.snr > 0.7 * least):
             inside = 0 < y < scale.snr.shape[0] - 1 and 0 < x < scale.snr.shape[1] - 1
             near = around(padded[k], y, x, 1)
@@ -123,6 +156,8 @@ def peaks_of(scales: list[Scale], response: Response) -> list[list[Peak]]:
     found: list[list[Peak]] = [[] for _ in scales]
     for top in tops:
         mine = [(y, x) for k, y, x, _ in tops if k == top[0]]
+        if dark and not is_darker(scales[top[0]], *top[1:3], response):
+            continue
         if len(found[top[0]]) < MAX_PEAKS:
             found[top[0]].append(peak_of(top, scales, padded, mine, response))
     return found

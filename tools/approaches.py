@@ -35,7 +35,7 @@ from step import ROOT
 from chromadock.choices import MAPPINGS
 from chromadock.errors import ChromadockError
 from chromadock.variety import Backdrops, Half
-from chromadock.variety.backdrops import pictures
+from chromadock.variety.backdrops import pictures_in
 
 PLAIN = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
 WAYS = {"both": (False, True), "with": (True,), "without": (False,)}
@@ -71,7 +71,7 @@ def _run(args: argparse.Namespace) -> tuple[list[Row], list[Row], list[Row]]:
     if args.save:
         args.save.mkdir(parents=True, exist_ok=True)
     seed, ways = half.seed(args.seed), WAYS[args.attitude]
-    stills = [p for folder in args.still for p in pictures(folder) if half.has(p)]
+    stills = [p for p in pictures_in(args.still) if half.has(p)]
     if args.stills:
         stills = stills[:: max(len(stills) // args.stills, 1)][: args.stills]
     empty = args.runs // 4 if args.no_dock is None else args.no_dock

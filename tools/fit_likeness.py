@@ -29,6 +29,7 @@ from step import ROOT
 from chromadock._native import lib
 from chromadock.colour.marker import marker_hue
 from chromadock.colour.vehicle import vehicle_background
+from chromadock.errors import ChromadockError
 from chromadock.evaluate.experiment import read_experiment
 from chromadock.evaluate.runs import Run, runs_of
 from chromadock.method import HUE_RANGE
@@ -152,7 +153,7 @@ def regression(design: np.ndarray, lamp: np.ndarray, weight: np.ndarray) -> np.n
 
 
 def main() -> int:
-    """Fit and write the table; exit status 3 without photographs."""
+    """Fit and write the table; exit status 2 for a wrong folder, 3 without photographs."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--scenes", type=int, default=3200)
     parser.add_argument("--simulated", type=int, default=1000, help="frames, about")
@@ -163,7 +164,11 @@ def main() -> int:
     if not BACKGROUNDS.is_dir():
         print(f"no photographs: {BACKGROUNDS.relative_to(ROOT.parent)} is missing", file=sys.stderr)
         return 3
-    backdrops = Backdrops.of_folders(BACKGROUNDS, args.photographs).half(Half.DEVELOP)
+    try:
+        backdrops = Backdrops.of_folders(BACKGROUNDS, args.photographs).half(Half.DEVELOP)
+    except ChromadockError as error:
+        print(error, file=sys.stderr)
+        return 2
     files = [*backdrops.plain, *backdrops.other]
     chosen = np.random.default_rng(0).permutation(len(files))[: args.looks]
     with ProcessPoolExecutor(args.jobs) as pool:

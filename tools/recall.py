@@ -32,7 +32,6 @@ from step import ROOT
 from chromadock.choices import DEFAULT_METHOD, METHODS
 from chromadock.errors import ChromadockError
 from chromadock.variety import Backdrops, Half
-from chromadock.variety.backdrops import pictures
 from chromadock.variety.factors import variety
 
 BACKGROUNDS = ROOT.parent / "shared" / "data" / "transdec" / "backgrounds"
@@ -100,7 +99,7 @@ def _run(args: argparse.Namespace) -> tuple[list[Row], list[Row], list[Row]]:
             )
             for i in range(10_000_000, 10_000_000 + empty)
         ]
-        files = [p for folder in args.photographs for p in pictures(folder) if half.has(p)]
+        files = backdrops.other
         every = len(files) if args.looks is None else max(args.looks, 1)
         files = files[:: max(len(files) // max(every, 1), 1)]
         looks = [pool.submit(photograph_trial, args.method, path) for path in files]

@@ -66,7 +66,8 @@ class Found:
     standard error; ``estimates``: both poses, with their information; all for a track.
     ``evidence``: decades by which the dock explains what was seen better than clutter does; None
     where a method does not weigh it.  ``hue`` 0..1535: of the light that the markers add, as
-    received; ``clipped``, ``stops_over`` and ``misfit``: see ``Detection``.
+    received, None where they were found by their dark holders; ``clipped``, ``stops_over`` and
+    ``misfit``: see ``Detection``.
     """
 
     state: str

@@ -6,7 +6,7 @@ import time
 
 
 class Stopwatch:
-    """Laps since the one before; each name once."""
+    """Laps since the one before; those of one name are added up."""
 
     def __init__(self) -> None:
         self._start = self._last = time.perf_counter()
@@ -15,7 +15,7 @@ class Stopwatch:
     def lap(self, stage: str) -> None:
         """Book the time since the last lap under ``stage``."""
         now = time.perf_counter()
-        self._laps[stage] = 1000 * (now - self._last)
+        self._laps[stage] = self._laps.get(stage, 0.0) + 1000 * (now - self._last)
         self._last = now
 
     def stop(self) -> dict[str, float]:

@@ -4,7 +4,9 @@
  * front_respond() makes linear light of the picture at several scales, matched
  * filters of how that fluctuates, and tells how much each cell shines in units
  * of its local noise.  front_find() tells which cells stand out, and how like a
- * lamp each of them looks.
+ * lamp each of them looks.  With the opposite sense it tells which stand out
+ * for the light that they take away, as a lamp's black holder does before
+ * bright water.
  *
  * All arrays are the caller's; what a function needs for itself it allocates
  * and frees again.  Nothing is kept between calls, so any number of frames may
@@ -45,6 +47,9 @@
 /* Signal to noise that a hue other than the expected one counts less: the
  * largest of several normal variables exceeds one of them by about so much. */
 #define FRONT_UNEXPECTED 0.4
+
+/* The same of what is dark, which noise alone hardly has. */
+#define FRONT_MIN_DARK_SNR 5.0
 
 /* Least signal to noise of a peak at the two finest scales.  Below it noise
  * alone has so many peaks that no constellation could stand out.  At a coarser
@@ -136,10 +141,12 @@ typedef struct {
  * the border of a scale that is narrower than the finest. */
 typedef struct {
     front_layout_t layout;
-    float *light;  /* 3 images: the mean light of each cell */
-    float *added;  /* 3 images: the same less the light of the surround */
-    float *snr;    /* the largest answer of a filter, in units of noise */
-    uint8_t *best; /* which filter gave it, 0 to FRONT_HUES - 1 */
+    float *light;    /* 3 images: the mean light of each cell */
+    float *added;    /* 3 images: the same less the light of the surround */
+    float *snr;      /* the largest answer of a filter, in units of noise */
+    uint8_t *best;   /* which filter gave it, 0 to FRONT_HUES - 1 */
+    float *opposite; /* the largest of what answers are less than nothing, at
+                      * all scales but the finest; no hue counts less here */
     double
         *covariance; /* 3 x 3: of the fluctuation of the second scale's cells */
     float *weights;  /* FRONT_HUES x 3: the matched filters, such that those
@@ -147,6 +154,9 @@ typedef struct {
     double *axes;    /* 3 x 3: the matched filter of white, and two filters that
                       * are blind to white, such that all three fluctuate by 1,
                       * each for itself */
+    int32_t sense;   /* 1; the same frame with -1 is seen for what takes light
+                      * away, with snr and opposite interchanged: the sign of what
+                      * is looked for in light and added */
 } front_frame_t;
 
 /* Peaks, those of each scale from FRONT_MAX_PEAKS times the scale on, the

@@ -4,6 +4,14 @@
 #include <math.h>
 
 #define TURN 6.283185307179586
+/* Of eight places about what is dark so many are brighter: not those along two
+ * bars, as dark, that end there.  Beside something bright, whose light makes
+ * its surround seem dark, only those towards it are. */
+#define BRIGHTER 5
+/* By such a share of what it seems to lack, in the channel where that is most;
+ * and it lacks so many standard deviations of a cell. */
+#define LEAST_DARKER 0.5F
+#define LEAST_LACK 2.0F
 
 _Static_assert(FRONT_INPUTS == FRONT_LOOKS + FRONT_BASE - 1,
                "inputs are the looks, and the base without its 1");
@@ -57,14 +65,14 @@ WIDE_VECTORS static void look_at_ring(const float *cell, const ring_t *ring,
 }
 
 /* The cell of another scale that a place is in. */
-static const float *cell_at(const front_frame_t *frame, int scale,
-                            const double xy[2])
+static const float *cell_at(const front_frame_t *frame, const float *snr,
+                            int scale, const double xy[2])
 {
     const front_layout_t *layout = &frame->layout;
     const int cell = layout->cell[scale];
     const int column = (int)((xy[0] + 0.5) / cell);
     const int row = (int)((xy[1] + 0.5) / cell);
-    return frame->snr + first_cell(layout, scale) +
+    return snr + first_cell(layout, scale) +
            most(0, least(row, layout->height[scale] - 1)) * layout->columns +
            most(0, least(column, layout->width[scale] - 1));
 }
@@ -79,6 +87,16 @@ static float most_about(const float *cell, int stride)
     return highest;
 }
 
+/* The least of a cell and the eight about it. */
+static float least_about(const float *cell, int stride)
+{
+    float near[8], lowest = *cell;
+    look_around(cell, stride, 1, near);
+    for (int i = 0; i < 8; i++)
+        lowest = lesser(lowest, near[i]);
+    return lowest;
+}
+
 static void look_at_scales(const front_frame_t *frame, const summit_t *summit,
                            const double xy[2], double looks[FRONT_LOOKS])
 {
@@ -86,18 +104,24 @@ static void look_at_scales(const front_frame_t *frame, const summit_t *summit,
     looks[FRONT_COARSER] = looks[FRONT_COARSER_MOST] = looks[FRONT_COARSEST] =
         looks[FRONT_FINER_MOST] = -1.0;
     if (scale + 1 < frame->layout.scales) {
-        const float *cell = cell_at(frame, scale + 1, xy);
+        const float *cell = cell_at(frame, frame->snr, scale + 1, xy);
         looks[FRONT_COARSER] = (double)(*cell / summit->centre);
         looks[FRONT_COARSER_MOST] =
             (double)(most_about(cell, stride) / summit->centre);
     }
     if (scale + 2 < frame->layout.scales)
         looks[FRONT_COARSEST] =
-            (double)(*cell_at(frame, scale + 2, xy) / summit->centre);
-    if (scale > 0)
-        looks[FRONT_FINER_MOST] =
-            (double)(most_about(cell_at(frame, scale - 1, xy), stride) /
+            (double)(*cell_at(frame, frame->snr, scale + 2, xy) /
                      summit->centre);
+    if (scale > 0) {
+        /* The finest scale is kept in one sense alone. */
+        const bool kept = frame->sense > 0 || scale > 1;
+        const float *cell =
+            cell_at(frame, kept ? frame->snr : frame->opposite, scale - 1, xy);
+        looks[FRONT_FINER_MOST] = (double)((kept ? most_about(cell, stride)
+                                                 : -least_about(cell, stride)) /
+                                           summit->centre);
+    }
 }
 
 /* The second least and the second greatest of eight values. */
@@ -130,12 +154,14 @@ static void look_at_channels(const front_frame_t *frame, int at,
         float around[8], low, high, sum = 0;
         look_around(cell, layout->columns, FRONT_BORDER, around);
         find_seconds(around, &low, &high);
-        missing = greater(missing, (low - *cell) / deviation);
-        adds = greater(adds, (*cell - high) / deviation);
+        const float below = (low - *cell) / deviation;
+        const float above = (*cell - high) / deviation;
+        missing = greater(missing, frame->sense > 0 ? below : above);
+        adds = greater(adds, frame->sense > 0 ? above : below);
         look_around(cell, layout->columns, 1, around);
         for (int i = 0; i < 8; i++)
             sum += around[i] / 8.0F;
-        rises[c] = (*cell - sum) / deviation;
+        rises[c] = (float)frame->sense * (*cell - sum) / deviation;
         added[c] = fabsf(channel(layout, frame->added, c)[at]) / deviation;
     }
     looks[FRONT_MISSING] = (double)(missing / (adds + missing + 1.0F));
@@ -149,6 +175,29 @@ static void look_at_channels(const front_frame_t *frame, int at,
             (double)(rises[next] / greater(strongest, 1e-6F));
         added[next] = -1.0F;
     }
+}
+
+bool looks_dark(const front_frame_t *frame, int at)
+{
+    const front_layout_t *layout = &frame->layout;
+    int darkest = 0;
+    float lacks = 0, least = 0;
+    for (int c = 0; c < 3; c++) {
+        const float lack = -channel(layout, frame->added, c)[at];
+        const float deviation = (float)sqrt(frame->covariance[4 * c]);
+        if (lack / deviation > lacks) {
+            darkest = c;
+            lacks = lack / deviation;
+            least = LEAST_DARKER * lack;
+        }
+    }
+    const float *cell = channel(layout, frame->light, darkest) + at;
+    float around[8];
+    look_around(cell, layout->columns, FRONT_BORDER, around);
+    int brighter = 0;
+    for (int i = 0; i < 8; i++)
+        brighter += around[i] > *cell + least;
+    return lacks >= LEAST_LACK && brighter >= BRIGHTER;
 }
 
 void looks_at(const front_frame_t *frame, const ring_t rings[LOOKS_RINGS],

@@ -99,22 +99,36 @@ static double inside_of(const front_layout_t *layout, const double xy[2])
            share_inside(xy[1], radius, height);
 }
 
+/* What the filter that answers most to a cell says of it, which of what takes
+ * light away has not been kept. */
+static float excess_of(const front_frame_t *frame, int at, const float light[3],
+                       const float added[3])
+{
+    if (frame->sense > 0)
+        return filtered(frame->weights + 3 * frame->best[at],
+                        least_weight(light[0], light[1], light[2]), added[0],
+                        added[1], added[2]);
+    float most = 0;
+    for (int hue = 0; hue < FRONT_HUES; hue++)
+        most = greater(most, filtered(frame->weights + 3 * hue, -FLT_MAX,
+                                      added[0], added[1], added[2]));
+    return most;
+}
+
 static void describe(const front_frame_t *frame,
                      const ring_t rings[LOOKS_RINGS], const summit_t *summit,
                      front_peaks_t *peaks, int k)
 {
     const front_layout_t *layout = &frame->layout;
-    const int best = frame->best[summit->at];
     float light[3], added[3];
     double exact[3];
     for (int c = 0; c < 3; c++) {
         light[c] = channel(layout, frame->light, c)[summit->at];
-        added[c] = channel(layout, frame->added, c)[summit->at];
+        added[c] =
+            (float)frame->sense * channel(layout, frame->added, c)[summit->at];
         exact[c] = (double)added[c];
     }
-    const float excess = filtered(frame->weights + 3 * best,
-                                  least_weight(light[0], light[1], light[2]),
-                                  added[0], added[1], added[2]);
+    const float excess = excess_of(frame, summit->at, light, added);
     double flatness;
     measure_top(frame, summit, peaks->xy + 2 * k, &flatness);
     looks_at(frame, rings, summit, peaks->xy + 2 * k, flatness,
@@ -136,7 +150,8 @@ void front_find(const front_frame_t *frame, const front_network_t *network,
     memset(peaks->count, 0, sizeof(peaks->count));
     for (int i = 0; i < n; i++) {
         const int scale = summits[i].scale;
-        if (peaks->count[scale] == FRONT_MAX_PEAKS)
+        if (peaks->count[scale] == FRONT_MAX_PEAKS ||
+            (frame->sense < 0 && !looks_dark(frame, summits[i].at)))
             continue;
         const int k = FRONT_MAX_PEAKS * scale + peaks->count[scale]++;
         describe(frame, rings, &summits[i], peaks, k);

@@ -23,7 +23,7 @@ typedef struct {
     /* The light of the next scale, or of the last scale its own: the surround
      * is smooth, and its mean costs a quarter there. */
     image_t coarser[3];
-    image_t snr;
+    image_t snr, dark_snr;
     uint8_t *best;
     bool *clipped; /* of each row, whether it may have a clipped cell */
     int hues;      /* filters that are looked through */
@@ -230,14 +230,14 @@ static inline void over_noise(float *restrict answers, int columns,
 }
 
 /* The largest of the filters' answers to a row over their noise, and whose it
- * is. */
+ * is; and the largest of what they are less than nothing. */
 static inline void keep_row(const row_t *row, int columns, bool any_clipped,
                             const float (*weights)[3], const noise_t *noise,
                             float unexpected, float *restrict snr,
-                            int *restrict which)
+                            int *restrict which, float *restrict dark_snr)
 {
     for (int x = 0; x < columns; x++) {
-        float largest = 0;
+        float largest = 0, darkest = 0;
         int whose = 0;
 #pragma GCC unroll 6
         for (int hue = 0; hue < FRONT_HUES; hue++) {
@@ -251,9 +251,11 @@ static inline void keep_row(const row_t *row, int columns, bool any_clipped,
             const int larger = -(hue == 0 || counted > largest);
             whose = (whose & ~larger) | (hue & larger);
             largest = hue == 0 ? counted : greater(counted, largest);
+            darkest = greater(-own, darkest);
         }
         snr[x] = largest;
         which[x] = whose;
+        dark_snr[x] = darkest;
     }
 }
 
@@ -268,7 +270,7 @@ WIDE_VECTORS static void keep_largest(work_t *work, const float (*weights)[3],
         const place_t p = cells_place(y, whole.rows, drawn.rows);
         const noise_t noise = {row_of(drawn, p.before), row_of(drawn, p.after),
                                drawn.rows * columns, p.share};
-        float *snr = row_of(whole, y);
+        float *snr = row_of(whole, y), *dark = row_of(work->dark_snr, y);
         uint8_t *restrict best = work->best + y * whole.stride;
         if (work->hues == 1) {
             over_noise(snr, columns, &noise);
@@ -278,10 +280,10 @@ WIDE_VECTORS static void keep_largest(work_t *work, const float (*weights)[3],
         const row_t row = added_row(work, y);
         if (work->clipped[y])
             keep_row(&row, columns, true, weights, &noise, unexpected, snr,
-                     work->which);
+                     work->which, dark);
         else
             keep_row(&row, columns, false, weights, &noise, unexpected, snr,
-                     work->which);
+                     work->which, dark);
         const int *restrict which = work->which;
         for (int x = 0; x < columns; x++)
             best[x] = (uint8_t)which[x];
@@ -295,6 +297,7 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
     const int wide =
         most(FRONT_SURROUND_PIXELS / layout->cell[scale], FRONT_SURROUND_CELLS);
     work_t work = {.snr = at_scale(layout, frame->snr, scale),
+                   .dark_snr = at_scale(layout, frame->opposite, scale),
                    .best = frame->best + first_cell(layout, scale),
                    .hues = scale == 0 ? 1 : FRONT_HUES};
     for (int c = 0; c < 3; c++) {
@@ -333,6 +336,8 @@ static bool respond_at_scale(front_frame_t *frame, int scale, float unexpected)
         measure_noise(&work, weights);
         keep_largest(&work, weights, unexpected);
         cells_repeat_outermost(layout, frame->snr, scale);
+        if (work.hues > 1)
+            cells_repeat_outermost(layout, frame->opposite, scale);
     }
     free(floats);
     free(which);

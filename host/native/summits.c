@@ -89,7 +89,9 @@ WIDE_VECTORS static int add_summits(const front_frame_t *frame, int scale,
     const image_t snr = at_scale(layout, frame->snr, scale);
     const float wider =
         greater((float)layout->cell[scale] / (float)layout->cell[1], 1.0F);
-    const float least_snr = (float)FRONT_MIN_SNR * wider;
+    const double weakest =
+        frame->sense > 0 ? FRONT_MIN_SNR : FRONT_MIN_DARK_SNR;
+    const float least_snr = (float)weakest * wider;
     const float worth = (float)CELL_SHARE * least_snr;
     /* One in from the edge, so that a peak has neighbours on all sides. */
     const int end = snr.columns - 1;
@@ -162,8 +164,11 @@ static void find_saddles(const front_frame_t *frame, summit_t *summits, int n)
 
 int summits_find(const front_frame_t *frame, summit_t summits[2 * MAX_SUMMITS])
 {
+    /* What is dark in the finest cells is JPEG's doing about a lamp rather than
+     * a holder; and they are seen through one filter alone. */
     int n = 0;
-    for (int scale = 0; scale < frame->layout.scales; scale++)
+    for (int scale = frame->sense > 0 ? 0 : 1; scale < frame->layout.scales;
+         scale++)
         n = add_summits(frame, scale, summits, n);
     n = keep_strongest(summits, n);
     find_saddles(frame, summits, n);

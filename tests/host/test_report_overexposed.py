@@ -38,3 +38,16 @@ def test_how_much_shorter_to_expose_is_said_once(
 def test_a_few_frames_or_a_single_lamp_deserve_no_word(capsys: pytest.CaptureFixture[str]) -> None:
     assert said(2.0, 0.75, _COMPARED_FRAMES - 1, capsys) == ""
     assert said(2.0, 0.25, 3 * _COMPARED_FRAMES, capsys) == ""
+
+
+def test_that_only_the_holders_of_the_lamps_show_is_said_once(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    water, marker = Background((40, 160, 200), 195.0, 1.0), Marker((255, 0, 0), 0.0)
+    report = Report(json=True, calibrated=True)
+    for _ in range(3 * _COMPARED_FRAMES):
+        report.frame(FRAME, Detection("found", water, marker, None, 0.0, evidence=8.0))
+        # A method that weighs no evidence knows nothing of it.
+        report.frame(FRAME, Detection("found", water, marker, None, 0.0))
+    err = capsys.readouterr().err
+    assert err.count("found by the dark holders of its lamps") == 1

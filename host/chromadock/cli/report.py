@@ -54,6 +54,7 @@ class Report:
         self._tracked = 0
         self._off: list[complex] = []
         self._clipped = 0
+        self._unlit = 0
         self._seen = 0
         self._misfits = 0
         self._misfit_told = False
@@ -85,6 +86,13 @@ class Report:
 
     def _advise(self, detection: Detection) -> None:
         """Say once what several frames have shown to be amiss."""
+        if detection.found and detection.evidence is not None and detection.clipped is None:
+            self._unlit += 1
+            if self._unlit == _COMPARED_FRAMES:
+                self._aside(
+                    "warning: the dock is found by the dark holders of its lamps, which hardly "
+                    "shine here: check that they are lit, and as bright as they may be"
+                )
         if detection.clipped is not None and detection.clipped > MOST_CLIPPED:
             self._clipped += 1
             if self._clipped == _COMPARED_FRAMES:

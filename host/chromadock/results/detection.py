@@ -34,8 +34,9 @@ class Marker:
     ``rgb`` 0..255 and ``hue_deg`` 0..360 are None where there is none to prefer; white has
     no hue.  ``given``: ``#RRGGBB``, ``white`` or ``any`` where the colour was given beforehand;
     None where it is worked out from the water's.  ``received_deg``: the hue of the light that
-    markers were found to add, None without, or where all of it clips; it differs by some tens of
-    degrees where both sides agree, and by more where they do not.
+    markers were found to add, None without, where all of it clips, or where the dock was found by
+    its dark holders alone; it differs by some tens of degrees where both sides agree, and by more
+    where they do not.
     """
 
     rgb: RGB | None
@@ -80,7 +81,8 @@ class Detection:
     dock's marker names to their pixel; ``track`` what all frames so far tell, at this one's time
     (None where frames are treated alone); ``clipped`` the share of the markers, 0..1, whose core
     is overexposed, and ``stops_over`` by how many stops the exposure should be shorter for the
-    median of those (see ``overexposure.stops_over``); ``timing_ms`` milliseconds by stage, with
+    median of those (see ``overexposure.stops_over``), both None where the dock was found by its
+    dark holders and not by its lamps; ``timing_ms`` milliseconds by stage, with
     ``total``.
     """
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from chromadock.camera import CameraModel
 from chromadock.dock import DockGeometry
 from chromadock.look import Found, Look
-from chromadock.results.detection import Blob
+from chromadock.results.detection import Blob, Misfit
 from chromadock.robust.find.measure import Measure
 from chromadock.robust.find.view import View, upright
 from chromadock.robust.frame.native import lib, pointer
@@ -19,11 +19,20 @@ from chromadock.robust.frame.overexposure import clipped_at, stops_over
 from chromadock.robust.frame.peaks import Peaks, find_peaks
 from chromadock.robust.frame.received import received_hue
 from chromadock.robust.frame.response import MIN_SIDE, Response, respond
-from chromadock.robust.weigh.acceptance import MOST_DOUBT, Constellation
+from chromadock.robust.weigh.acceptance import HOPEFUL, HOPEFUL_DARK, MOST_DOUBT, Constellation
 from chromadock.stopwatch import Stopwatch
 
 MAX_BLOBS = 16
 """Peaks that are reported."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Seen:
+    """``peaks`` of one sense, the dock among them, and what stood like it but does not fit."""
+
+    peaks: dict[int, Peaks]
+    best: Constellation | None
+    misfit: Misfit | None
 
 
 class RobustMethod:
@@ -56,32 +65,47 @@ class RobustMethod:
         response = respond(frame_bgr, look.hue, view.focal_px, preferred=look.colour == "hue")
         self._response = response
         watch.lap("response")
+        seen = self._seen(look, view, response, watch)
+        peaks = seen.peaks
+        if response.dark is not None and not self._whole(seen.best):
+            # Where lamps are not to be seen their holders may be.
+            dark = self._seen(look, view, response.dark, watch)
+            if dark.best is not None and _evidence(dark.best) > _evidence(seen.best):
+                seen, response = dark, response.dark
+        cells, count = _standing_out(self._response)
+        found = self._report(frame_bgr, seen.best, peaks, response, count / cells.size)
+        return found if seen.misfit is None else replace(found, misfit=seen.misfit)
+
+    def _seen(self, look: Look, view: View, response: Response, watch: Stopwatch) -> Seen:
+        """What of a frame stands out, and what of that is the dock."""
         peaks = find_peaks(response)
         watch.lap("peaks")
         turn = upright(look.R_expected)
         searched, candidates = {}, []
         if look.everywhere:
             searched = view.searched(peaks, turn)
-            by_scale = (view.candidates(cell, among) for cell, among in searched.items())
+            least = HOPEFUL if response.sense > 0 else HOPEFUL_DARK
+            by_scale = (view.candidates(cell, among, least) for cell, among in searched.items())
             candidates = sorted((c for found in by_scale for c in found), key=lambda c: -c.evidence)
         watch.lap("search")
         prior = view.prior(look.R_expected, look.R_covariance)
         dock = self._dock
         farthest, judged = dock.largest_range_m or np.inf, dock.judged - dock.centre
-        measure = Measure(frame_bgr, response, view, prior, turn, farthest, judged)
+        measure = Measure(look.frame_bgr, response, view, prior, turn, farthest, judged)
         best = measure.best(candidates)
-        if best is None and look.incomplete:
+        if best is None and look.incomplete and response.sense > 0:
             best = measure.incomplete(searched)
         if best is None:
-            priors = tuple(prior.about(self._dock.centre) for prior in look.priors)
+            priors = tuple(prior.about(dock.centre) for prior in look.priors)
             best = measure.about(priors, peaks)
         watch.lap("pose")
-        found = self._report(frame_bgr, best, peaks, response)
         if best is not None:
-            misfit = best.misfit
-        else:
-            misfit = max(measure.misfits, key=lambda m: m.evidence, default=None)
-        return found if misfit is None else replace(found, misfit=misfit)
+            return Seen(peaks, best, best.misfit)
+        return Seen(peaks, None, max(measure.misfits, key=lambda m: m.evidence, default=None))
+
+    def _whole(self, best: Constellation | None) -> bool:
+        """Whether all markers of the dock were found."""
+        return best is not None and len(best.markers) == len(self._points)
 
     def _view_of(self, camera: CameraModel) -> View:
         if self._view is None or not self._view.is_of(camera):
@@ -94,13 +118,12 @@ class RobustMethod:
         best: Constellation | None,
         peaks: dict[int, Peaks],
         response: Response,
+        passed: float,
     ) -> Found:
-        cells, count = _standing_out(response)
-        passed = count / cells.size
         blobs = _blobs(best, peaks)
         if best is None:
             return Found("not_found", passed, blobs)
-        names = self._dock.names
+        names, lit = self._dock.names, response.sense > 0
         places = zip(best.markers.tolist(), best.xy.tolist(), strict=True)
         sure = best.doubt <= MOST_DOUBT
         whole = "found" if len(best.markers) == len(names) else "partial"
@@ -114,12 +137,17 @@ class RobustMethod:
             pose=poses[0].pose(alternative) if sure else None,
             estimates=poses,
             evidence=best.evidence / float(np.log(10)),
-            hue=received_hue(response, best.xy),
-            clipped=float(clipped_at(frame_bgr, best.xy).mean()),
-            stops_over=stops_over(frame_bgr, best.xy),
+            hue=received_hue(response, best.xy) if lit else None,
+            clipped=float(clipped_at(frame_bgr, best.xy).mean()) if lit else None,
+            stops_over=stops_over(frame_bgr, best.xy) if lit else None,
             sigma_px=tuple(best.sigma_px.tolist()),
             smaller=best.smaller,
         )
+
+
+def _evidence(best: Constellation | None) -> float:
+    """Natural log of the likelihood ratio; of nothing the least."""
+    return -np.inf if best is None else best.evidence
 
 
 def _standing_out(response: Response) -> tuple[NDArray[np.uint8], int]:

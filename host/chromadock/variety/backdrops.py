@@ -39,11 +39,14 @@ class Backdrops:
 
     @classmethod
     def of_folders(cls, plain: Path | None, other: Iterable[Path] = ()) -> Backdrops:
-        """The pictures of folders, by name; a folder that is missing has none."""
-        return cls(
-            pictures(plain) if plain else (),
-            tuple(path for folder in other for path in pictures(folder)),
-        )
+        """The pictures of folders, by name; a folder of water that is missing has none.
+
+        Raises
+        ------
+        ChromadockError
+            Where an ``other`` folder holds no picture.
+        """
+        return cls(pictures(plain) if plain else (), pictures_in(other))
 
     def half(self, half: Half) -> Backdrops:
         """Those photographs that are a half's."""
@@ -66,6 +69,23 @@ def pictures(folder: Path) -> tuple[Path, ...]:
         return ()
     files = [path for path in folder.iterdir() if is_picture(path)]
     return tuple(sorted(files, key=lambda path: natural_key(path.name)))
+
+
+def pictures_in(folders: Iterable[Path]) -> tuple[Path, ...]:
+    """The pictures of folders that a user has named, each folder's in the order of their names.
+
+    Raises
+    ------
+    ChromadockError
+        Where a folder itself holds none: figures would be of fewer than the user believes.
+    """
+    found: list[Path] = []
+    for folder in folders:
+        here = pictures(folder)
+        if not here:
+            raise ChromadockError(f"{folder}: no pictures there: name the folder that holds them")
+        found += here
+    return tuple(found)
 
 
 def backdrop(

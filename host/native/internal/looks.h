@@ -27,6 +27,10 @@ void looks_at(const front_frame_t *frame, const ring_t rings[LOOKS_RINGS],
               const summit_t *summit, const double xy[2], double flatness,
               double looks[FRONT_LOOKS]);
 
+/* Whether a cell lacks light against its surround, and not because something
+ * bright is in that: it is darker than most of what is about it. */
+bool looks_dark(const front_frame_t *frame, int at);
+
 /* Natural log of how much likelier such a peak is a lamp than clutter: the
  * ratio of the posterior odds with the looks to those without is the ratio of
  * the densities of the looks. */

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from chromadock.robust.frame.bars import FOLLOWED, lean_by_bars, smaller
-from chromadock.robust.frame.refine import Tops, refined
+from chromadock.robust.frame.refine import Tops, leaning, refined
 from chromadock.robust.frame.response import respond
 
 PLACES = np.array([(60.3, 60.7), (160.6, 64.2), (92.1, 118.4)])
@@ -37,8 +37,8 @@ def picture(bars: np.ndarray | None, post: bool = False, seed: int = 1) -> np.nd
     return np.clip(np.rint(encoded), 0, 255).astype(np.uint8)
 
 
-def tops(frame: np.ndarray) -> list[Tops]:
-    found = refined(frame, PLACES, 4, respond(frame, 0, 512.0), np.ones(3))
+def tops(frame: np.ndarray, places: np.ndarray = PLACES) -> list[Tops]:
+    found = refined(frame, places, 4, respond(frame, 0, 512.0), np.ones(len(places)))
     assert found is not None
     return found
 
@@ -51,9 +51,10 @@ def shrunk(off: np.ndarray) -> float:
 
 @pytest.mark.parametrize("bright", [0.5, 1.0, 2.0])
 def test_bars_draw_lamps_as_far_as_is_told(bright: float) -> None:
-    found = tops(picture(bright * WHITE))
+    frame = picture(bright * WHITE)
+    found = tops(frame)
     drawn = shrunk(np.array([top.xy[0] for top in found]) - PLACES)
-    told = smaller(PLACES, np.array([top.lean for top in found])) / FOLLOWED
+    told = smaller(PLACES, leaning(frame, found)) / FOLLOWED
     assert drawn > 0.001
     assert 0.5 * drawn < told < 2.5 * drawn
 
@@ -63,30 +64,30 @@ def test_bars_draw_lamps_as_far_as_is_told(bright: float) -> None:
 )
 def test_lamps_without_bright_bars_are_not_drawn(bars: np.ndarray | None, post: bool) -> None:
     """Dark bars end at dark holders; what crosses the way is no bar."""
-    found = tops(picture(bars, post))
-    assert np.abs([top.lean for top in found]).max() < 0.05
+    frame = picture(bars, post)
+    found = tops(frame)
+    assert np.abs(leaning(frame, found)).max() < 0.05
 
 
-def lamps_alone(places: np.ndarray, radius: float) -> list[Tops]:
+def lamps_alone(places: np.ndarray, radius: float) -> np.ndarray:
     y, x = np.mgrid[0:180, 0:220].astype(float)
     light = np.tile(WATER, (180, 220, 1))
     for px, py in places:
         light += np.exp(-0.5 * ((x - px) ** 2 + (y - py) ** 2) / radius**2)[..., None] * RED
-    frame = np.rint(255 * np.clip(light, 0, 1) ** (1 / 2.2)).astype(np.uint8)
-    found = refined(frame, places, 4, respond(frame, 0, 512.0), np.ones(len(places)))
-    assert found is not None
-    return found
+    return np.rint(255 * np.clip(light, 0, 1) ** (1 / 2.2)).astype(np.uint8)
 
 
 def test_a_lamp_on_the_way_to_another_is_no_bar() -> None:
-    found = lamps_alone(np.array([(40.0 + 45 * k, 90.0) for k in range(4)]), 1.6)
-    assert np.abs([top.lean for top in found]).max() < 0.05
+    places = np.array([(40.0 + 45 * k, 90.0) for k in range(4)])
+    frame = lamps_alone(places, 1.6)
+    assert np.abs(leaning(frame, tops(frame, places))).max() < 0.05
 
 
 def test_what_lamps_shine_on_each_other_is_no_bar() -> None:
     """Of two that are close to each other."""
-    found = lamps_alone(np.array([(60.0, 80.0), (160.0, 80.0), (60.0, 91.0), (160.0, 91.0)]), 2.5)
-    assert np.abs([top.lean for top in found]).max() < 0.05
+    places = np.array([(60.0, 80.0), (160.0, 80.0), (60.0, 91.0), (160.0, 91.0)])
+    frame = lamps_alone(places, 2.5)
+    assert np.abs(leaning(frame, tops(frame, places))).max() < 0.05
 
 
 def test_the_size_alone_is_told_and_never_that_it_may_be_larger() -> None:

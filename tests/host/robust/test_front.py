@@ -9,7 +9,9 @@ import cv2
 import numpy as np
 import pytest
 from front_reference import (
+    Scale,
     covariance_of,
+    dark_of,
     lights_of,
     peaks_of,
     promising_of,
@@ -22,7 +24,7 @@ from chromadock.method import HUE_RANGE
 from chromadock.robust.frame.likeness import inputs
 from chromadock.robust.frame.native import lib, pointer
 from chromadock.robust.frame.peaks import MIN_SNR, find_peaks
-from chromadock.robust.frame.response import HUES, linear, respond
+from chromadock.robust.frame.response import HUES, Response, linear, respond
 from chromadock.variety import Backdrops, Half, draw, render
 
 DATA = Path(__file__).resolve().parents[4] / "shared" / "data" / "transdec"
@@ -51,6 +53,7 @@ def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
     covariance = covariance_of(lights[1])
     assert np.abs(response.covariance - covariance).max() < 1e-4 * np.abs(covariance).max()
     scales = scales_of(frame, response)
+    assert response.dark is not None
     for k, expected in enumerate(scales):
         inside = layout.inside(k)
         light = np.moveaxis(response.light[:, inside[0], inside[1]], 0, 2)
@@ -64,10 +67,20 @@ def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
         count = lib.front_standing_out(response.native, k, pointer(cells))
         assert np.array_equal(cells, snr >= MIN_SNR)
         assert count == cells.sum()
+        if k > 0:
+            dark = response.dark.snr[inside]
+            assert np.abs(dark - expected.dark).max() < 1e-3 * max(1.0, np.abs(expected.dark).max())
+    held_against_peaks(response, scales)
+    held_against_peaks(response.dark, dark_of(scales, response))
+
+
+def held_against_peaks(response: Response, scales: list[Scale]) -> None:
+    layout = response.layout
     found = find_peaks(response)
     for cell, expected in zip(layout.cells, peaks_of(scales, response), strict=True):
         peaks = found[cell]
-        assert len(peaks.snr) == len(expected)
+        # Of one that takes just enough light away rounding decides.
+        assert abs(len(peaks.snr) - len(expected)) <= (response.sense < 0)
         if not expected:
             continue
         # Of peaks as strong as one another any may come first, or be the last of a full list, and
@@ -75,7 +88,9 @@ def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
         places = np.array([p.xy for p in expected])
         apart = np.linalg.norm(peaks.xy[:, None] - places, axis=2)
         order, found_too = apart.argmin(axis=1), apart.min(axis=1) < 0.01
-        assert found_too.mean() >= 0.98
+        # Of what is dark there are few.
+        astray = max(0.02 * len(found_too), response.sense < 0)
+        assert (~found_too).sum() <= astray
         order = order[found_too]
         assert len(set(order.tolist())) == len(order)
         assert np.abs(order - np.flatnonzero(found_too)).max() <= 1
@@ -87,9 +102,9 @@ def held_against_the_reference(frame: np.ndarray, hue: int) -> None:
         # The way to a higher peak may lead over either of two cells; looks count from -2 to 2.
         own, theirs = peaks.looks[found_too], np.array([p.looks for p in same])
         looks = np.abs(np.clip(own, -2, 2) - np.clip(theirs, -2, 2)).max(axis=1)
-        assert np.mean(looks < 4e-3) >= 0.98
+        assert np.sum(looks >= 4e-3) <= astray
         likeness = np.abs(peaks.likeness[found_too] - [p.likeness for p in same])
-        assert np.mean(likeness < 4e-2) >= 0.98
+        assert np.sum(likeness >= 4e-2) <= astray
         chosen = set(np.flatnonzero(np.isin(apart.argmin(axis=1), promising_of(expected))).tolist())
         assert len(chosen ^ set(peaks.promising.tolist())) <= 2
 

@@ -232,7 +232,7 @@ def test_what_moves_by_more_than_a_step_with_the_smoothing_is_no_lamp(
     wide = 0.2 * np.exp(-0.5 * ((x - way) ** 2 + y**2) / 4**2)
     nothing = np.zeros_like(x)
     smoothed = np.stack([narrow, wide, nothing, nothing]).astype(np.float32)
-    tops = _tops(np.array([50.0, 60.0]), smoothed, reach=4.0, step=1, slope=0.01)
+    tops = _tops(np.array([50.0, 60.0]), smoothed, 4.0, 1, 0.01, np.ones(3, np.float32))
     assert (tops is not None) == stands
     if tops is not None:
         assert tops.xy[0] == pytest.approx([50.0, 60.0])

@@ -29,6 +29,15 @@ def scenes(backdrops: Backdrops) -> list[Scene]:
     return [draw(i, 1, backdrops) for i in range(MANY)]
 
 
+def test_a_folder_that_is_named_and_holds_no_pictures_is_refused(tmp_path: Path) -> None:
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    cv2.imwrite(str(inner / "1.png"), np.zeros((48, 64, 3), np.uint8))
+    assert Backdrops.of_folders(None, [inner]).other == (inner / "1.png",)
+    with pytest.raises(ChromadockError, match="no pictures there: name the folder"):
+        Backdrops.of_folders(None, [inner, tmp_path])
+
+
 def test_the_same_seed_draws_the_same_scene(backdrops: Backdrops) -> None:
     first, again, other = (draw(5, seed, backdrops) for seed in (1, 1, 2))
     assert first.factors() == again.factors()

@@ -18,7 +18,7 @@ from chromadock.robust.frame.bars import smaller
 from chromadock.robust.frame.flux import fluxes
 from chromadock.robust.frame.peaks import Peaks
 from chromadock.robust.frame.plateau import on_one_thing
-from chromadock.robust.frame.refine import Tops, refined
+from chromadock.robust.frame.refine import Tops, leaning, refined
 from chromadock.robust.frame.response import Response
 from chromadock.robust.weigh.acceptance import (
     GAIN_OF_EXACT,
@@ -67,6 +67,12 @@ class Measure:
     largest_range_m: float
     judged: NDArray[np.float64]
     misfits: list[Misfit] = field(default_factory=list)
+
+    @property
+    def _shining(self) -> NDArray[np.uint8]:
+        """(H, W, 3): the frame, inverted where what is dark is looked for, so that it shines."""
+        dark = self.response.sense < 0
+        return np.bitwise_not(self.frame_bgr) if dark else self.frame_bgr
 
     def best(self, candidates: list[Candidate]) -> Constellation | None:
         """The dock: the candidate with most evidence, or what it is an image of."""
@@ -141,7 +147,7 @@ class Measure:
         xy, sigma, drift = _choices(tops)
         likely = self.view.log_shape(xy, sigma, self.upright) if len(xy) > 1 else np.zeros(1)
         k = int(likely.argmax())
-        if on_one_thing(self.frame_bgr, xy[k]):
+        if on_one_thing(self._shining, xy[k]):
             return None
         sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera)
         poses = estimates(sighting)
@@ -193,11 +199,11 @@ class Measure:
     ) -> tuple[Sighting, tuple[Estimate, ...], float, float]:
         """See ``weigh.told``; the poses with the error that bars may make, and that error, see
         ``look.Found.smaller``."""
-        bright = fluxes(self.frame_bgr, sighting.pixels)
+        bright = fluxes(self.frame_bgr, sighting.pixels) if self.response.sense > 0 else None
         sighting, poses, unsure = told(
             sighting, poses, placed, drift_px, bright, self.prior, judged
         )
-        drawn = smaller(sighting.pixels, np.array([top.lean for top in tops]))
+        drawn = smaller(sighting.pixels, leaning(self.frame_bgr, tops))
         return sighting, tuple(pose.drawn(drawn) for pose in poses), unsure, drawn
 
     def _partly(
@@ -212,7 +218,7 @@ class Measure:
         nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
         xy, sigma, drift = (np.array(values) for values in zip(*nearest, strict=True))
         # Where a track has the dock its lamps may be so near that they run into each other.
-        if not priors and on_one_thing(self.frame_bgr, xy):
+        if not priors and on_one_thing(self._shining, xy):
             return None
         points = self.view.points[guess.markers]
         sighting = Sighting(points, xy, sigma, self.view.camera)

@@ -15,7 +15,6 @@ from chromadock.robust.find.incomplete import Incomplete
 from chromadock.robust.find.search import Search, SearchedPeaks
 from chromadock.robust.frame.layout import finest_cell
 from chromadock.robust.frame.peaks import Peaks
-from chromadock.robust.weigh.acceptance import HOPEFUL
 from chromadock.robust.weigh.evidence import evidence_of_sets, placed_along
 from chromadock.robust.weigh.placement import PosePrior
 from chromadock.robust.weigh.shape import (
@@ -113,15 +112,16 @@ class View:
             if len(found.promising) >= MIN_MARKERS
         }
 
-    def candidates(self, cell: int, among: SearchedPeaks) -> list[Candidate]:
-        """What may be the dock among the peaks of one scale, the best first."""
+    def candidates(self, cell: int, among: SearchedPeaks, least: float) -> list[Candidate]:
+        """What may be the dock among the peaks of one scale, with an evidence of ``least`` or more,
+        the best first."""
         if len(among.peaks.promising) < len(self.points):
             return []
         if cell not in self._searches:
             finest = cell == finest_cell(self.camera.width, self.camera.height)
             apart_px = cell * (FINEST_SPACING_CELLS if finest else MIN_SPACING_CELLS)
             self._searches[cell] = Search(self.model, PEAK_ERROR * cell, apart_px)
-        found = self._searches[cell].find(among, HOPEFUL)
+        found = self._searches[cell].find(among, least)
         if not len(found.evidence):
             return []
         best = zip(found.members, found.looks.tolist(), found.evidence.tolist(), strict=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import cv2
@@ -26,9 +26,9 @@ WIDTH_PER_SPACING = 0.12
 """At most, of the distance between the closest markers, so that a neighbour's light hardly
 pulls."""
 LARGE_WIDTH_PER_SPACING = 0.24
-"""The same of lamps that were found in cells wider than FINE_CELL, and so are large themselves, and
-of overexposed ones: a narrower smoothing has its top at the plateau's rim, away from a neighbour
-whose halo makes it seem to slope."""
+"""The same of lamps that were found in cells wider than FINE_CELL, and so are large themselves, of
+overexposed ones, and of dark holders with a lamp in their middle: a narrower smoothing has its top
+at the rim, of a plateau away from a neighbour whose halo makes it seem to slope."""
 ROOMY = 2.0
 """Markers with so many times the room of the closest ones, as those out of the others' plane, are
 looked at for themselves; the rest alike, by the closest."""
@@ -72,8 +72,8 @@ class Tops:
     ``xy`` (k, 2) pixels; ``sigma`` (k,): standard deviations in x as in y, pixels, if it is a lamp
     and round; ``drift`` (k,): those of what may draw it aside.  ``width`` (k,) pixels, of the
     smoothing; ``give`` (k,) pixels by which a slope of the smoothed light of 1 per pixel moves it.
-    ``lean`` (2,) pixels: by how much bright bars may draw it aside, as they may all lamps of the
-    dock (``bars``).
+    ``weights`` (3,): of the channels, BGR, that were added up; negative where what is dark was
+    looked for.
     """
 
     xy: NDArray[np.float64]
@@ -81,7 +81,7 @@ class Tops:
     drift: NDArray[np.float64]
     width: NDArray[np.float64]
     give: NDArray[np.float64]
-    lean: NDArray[np.float64]
+    weights: NDArray[np.float32]
 
     def nearest(self, place: NDArray[np.float64]) -> tuple[NDArray[np.float64], float, float]:
         """The one nearest to ``place`` (2,), pixels: its own place, error and drift."""
@@ -127,14 +127,17 @@ def refined(
     where an overexposed one is one with its neighbour.
     """
     step = max(cell // FINE_CELL, 1)
-    overexposed = bool(clipped_at(frame_bgr, xy).all())
+    overexposed = response.sense > 0 and bool(clipped_at(frame_bgr, xy).all())
+    # Of what is dark the lamp in its middle is the least so.
+    rimmed = overexposed or response.sense < 0
     by_spacing = _by_spacing(xy)
     groups = [
-        (lamps, _patches(frame_bgr, xy[lamps], step, spacing / step, overexposed))
+        (lamps, _patches(frame_bgr, xy[lamps], step, spacing / step, rimmed))
         for lamps, spacing in by_spacing
     ]
     added = response.added_near(xy, cell).sum(axis=0)
     weights = _weights(added, [patches for _, patches in groups], response.covariance)
+    weights *= response.sense
     found: dict[int, Tops] = {}
     least: dict[int, tuple[NDArray[np.float64], NDArray[np.float32]]] = {}
     for lamps, patches in groups:
@@ -144,7 +147,7 @@ def refined(
         for lamp, middle, smoothed, slope in zip(
             lamps, patches.middles, light, slopes.tolist(), strict=True
         ):
-            tops = _tops(middle, smoothed, patches.reach, step, slope)
+            tops = _tops(middle, smoothed, patches.reach, step, slope, weights)
             if tops is None or tops.sigma[0] > MAX_SHIFT * step:
                 return None
             found[lamp] = tops
@@ -152,12 +155,18 @@ def refined(
     tops_of = [found[lamp] for lamp in range(len(xy))]
     places = np.array([tops.xy[0] for tops in tops_of])
     if not overexposed or not have_cores(frame_bgr, places).any():
-        width, give = np.array([(tops.width[0], tops.give[0]) for tops in tops_of]).T
-        leans = lean_by_bars(frame_bgr, places, width, give, weights)
-        return [replace(tops, lean=lean) for tops, lean in zip(tops_of, leans, strict=True)]
+        return tops_of
     room = by_spacing[0][1] / 2
     cores = [_by_core(tops, *least[lamp], step, room) for lamp, tops in enumerate(tops_of)]
     return [core for core in cores if core is not None] if all(cores) else None
+
+
+def leaning(frame_bgr: NDArray[np.uint8], tops: list[Tops]) -> NDArray[np.float64]:
+    """(n, 2) pixels: by how much bars may draw the likeliest tops of n lamps aside, as they may
+    all lamps of the dock (``bars``)."""
+    width, give = np.array([(top.width[0], top.give[0]) for top in tops]).T
+    places = np.array([top.xy[0] for top in tops])
+    return lean_by_bars(frame_bgr, places, width, give, tops[0].weights)
 
 
 def _by_spacing(xy: NDArray[np.float64]) -> list[tuple[list[int], float]]:
@@ -200,11 +209,12 @@ def _patches(
     xy: NDArray[np.float64],
     step: int,
     spacing: float,
-    overexposed: bool,
+    rimmed: bool,
 ) -> _Patches:
-    """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker."""
+    """Of lamps near ``xy``, (n, 2) pixels; the closest has ``spacing`` steps to the next marker.
+    ``rimmed``: whether they stand out least in their middles."""
     reach = min(max(2.0, SHIFT_PER_SPACING * spacing), MAX_SHIFT)
-    large = step > 1 or overexposed
+    large = step > 1 or rimmed
     widest = (LARGE_WIDTH_PER_SPACING if large else WIDTH_PER_SPACING) * spacing
     widths = [w for w in WIDTHS[:-2] if w <= max(WIDTHS[0], widest)]
     middle = int(reach + widths[-1]) + 1
@@ -269,9 +279,10 @@ def _tops(
     reach: float,
     step: int,
     slope: float,
+    weights: NDArray[np.float32],
 ) -> Tops | None:
     """Where a lamp may be, of smoothed light (k + 2, s, s) whose noise has so steep a slope,
-    smoothed by 1 step; None where there is no top.  The others: see ``_Patches``."""
+    smoothed by 1 step; None where there is no top.  The others: see ``_Patches`` and ``Tops``."""
     tops = np.empty((lib.TOPS_MOST, 6))
     layers, side, _ = smoothed.shape
     light = ffi.from_buffer("float[]", smoothed)
@@ -280,7 +291,7 @@ def _tops(
     if not count:
         return None
     sigma, drift, width, give = tops[:count, 2:].T
-    return Tops(middle + step * tops[:count, :2], sigma, drift, width, give, np.zeros(2))
+    return Tops(middle + step * tops[:count, :2], sigma, drift, width, give, weights)
 
 
 def _by_core(
@@ -301,12 +312,6 @@ def _by_core(
     xy = middle + step * np.array([x[0], y[0]])
     off = float(np.linalg.norm(xy - tops.xy[0]))
     sigma = math.hypot(min(tops.sigma[0], CORE_ERROR_PX), CORE_ERROR_SHARE * off)
-    # Its rim is as bright on all sides, whatever leads to it.
-    return Tops(
-        xy[None],
-        np.array([sigma]),
-        np.zeros(1),
-        tops.width[:1],
-        tops.give[:1],
-        np.zeros(2),
-    )
+    # Its rim is as bright on all sides, whatever leads to it: no slope moves it, and no width.
+    none = np.zeros(1)
+    return Tops(xy[None], np.array([sigma]), none, tops.width[:1], none, tops.weights)

@@ -45,6 +45,11 @@ class Response:
     largest of the filters' outputs, in standard deviations of its local fluctuation;
     ``best`` (H, W) uint8: of which filter.  The borders of ``added`` and ``best`` are not set.
 
+    ``sense``: 1 where what shines is looked for.  It is -1 in ``dark``, the same frame for what
+    takes light away, as a lamp's black holder does before bright water: its ``snr`` is the largest
+    of what the filters' outputs are less than nothing, with no hue expected, and told of all scales
+    but the finest; ``best`` is not its own.  ``dark`` has no ``dark``.
+
     ``native``: all of that as a ``front_frame_t``.
     """
 
@@ -56,6 +61,8 @@ class Response:
     added: NDArray[np.float32]
     snr: NDArray[np.float32]
     best: NDArray[np.uint8]
+    sense: int
+    dark: Response | None
     native: Any
 
     def light_at(self, at: NDArray[np.intp]) -> NDArray[np.float32]:
@@ -63,8 +70,9 @@ class Response:
         return np.moveaxis(self.light.reshape(3, -1).take(at, axis=1), 0, -1)
 
     def added_at(self, at: NDArray[np.intp]) -> NDArray[np.float64]:
-        """(N, 3) linear BGR: the light of cells beyond that of the surround, by their index."""
-        return self.added.reshape(3, -1)[:, at].T.astype(np.float64)
+        """(N, 3) linear BGR: the light of cells beyond that of the surround, by their index; in
+        ``dark`` what is missing of that."""
+        return self.sense * self.added.reshape(3, -1)[:, at].T.astype(np.float64)
 
     def added_near(self, xy: NDArray[np.float64], cell: int) -> NDArray[np.float64]:
         """(n, 3) linear BGR: the light beyond that of the surround of the cells, ``cell`` pixels
@@ -115,18 +123,24 @@ def respond(
     picture = np.ascontiguousarray(frame_bgr)
     light = np.empty((3, *layout.shape), np.float32)
     added = np.empty_like(light)
-    snr = np.empty(layout.shape, np.float32)
+    snr, dark_snr = np.empty_like(added[0]), np.empty_like(added[0])
     best = np.empty(layout.shape, np.uint8)
     weights, axes = np.empty((HUES, 3), np.float32), np.empty((3, 3))
     covariance = np.empty((3, 3))
-    arrays = light, added, snr, best, covariance, weights, axes
-    native = ffi.new("front_frame_t *", (layout.native[0], *map(pointer, arrays)))
+
+    def native_of(seen: NDArray[np.float32], opposite: NDArray[np.float32], sense: int) -> Any:
+        arrays = light, added, seen, best, opposite, covariance, weights, axes
+        return ffi.new("front_frame_t *", (layout.native[0], *map(pointer, arrays), sense))
+
+    native = native_of(snr, dark_snr, 1)
     less = lib.FRONT_UNEXPECTED if preferred else 0.0
     signatures = _signatures(hue)
     tables = pointer(LINEAR), pointer(signatures)
     if lib.front_respond(native, pointer(picture), pixels, *tables, less):
         raise MemoryError("no memory for a frame's response")
-    return Response(weights, axes, covariance, layout, light, added, snr, best, native)
+    alike = weights, axes, covariance, layout, light, added
+    dark = Response(*alike, dark_snr, best, -1, None, native_of(dark_snr, snr, -1))
+    return Response(*alike, snr, best, 1, dark, native)
 
 
 def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -35,6 +35,10 @@ shapes by a normal distribution: most to a near dock that is turned far."""
 HOPEFUL = LEAST_EVIDENCE - GAIN_OF_EXACT
 """The same of the best that is not likely, which is measured where no likely one is the dock."""
 
+HOPEFUL_DARK = float(4 * np.log(10))
+"""The same among what is dark, where next to no dock has less: it is looked at in each frame that
+shows no lamps, and must be quick."""
+
 PLACE_TOLERANCE = 0.05
 """Of the range: a pose whose place is farther off is wrong."""
 

@@ -111,12 +111,12 @@ def dark_of(scales: list[Scale], response: Response) -> list[Scale]:
 
 def is_darker(scale: Scale, y: int, x: int, response: Response) -> bool:
     """Whether a place takes light away by two standard deviations of a cell or more, in the channel
-    where it takes most, and by half of that from five of eight places about it."""
+    where it takes most, and by half of that from six of eight places about it."""
     light = np.pad(scale.light, ((BORDER,) * 2, (BORDER,) * 2, (0, 0)), mode="edge")
     less = scale.light[y, x] - around(light, y, x, 3)
     lacks = scale.added[y, x] / np.sqrt(np.diag(response.covariance))
     c = int(lacks.argmax())
-    return bool(lacks[c] >= 2 and (less[:, c] > 0.5 * scale.added[y, x, c]).sum() >= 5)
+    return bool(lacks[c] >= 2 and (less[:, c] > 0.5 * scale.added[y, x, c]).sum() >= 6)
 
 
 @dataclass(frozen=True)

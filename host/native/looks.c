@@ -4,10 +4,11 @@
 #include <math.h>
 
 #define TURN 6.283185307179586
-/* Of eight places about what is dark so many are brighter: not those along two
- * bars, as dark, that end there.  Beside something bright, whose light makes
- * its surround seem dark, only those towards it are. */
-#define BRIGHTER 5
+/* Of eight places about what is dark so many are brighter: all but those along
+ * two bars, as dark, that end there.  Beside something bright, whose light
+ * makes its surround seem dark, only those towards it are, and between two
+ * bright bars those towards these. */
+#define BRIGHTER 6
 /* By such a share of what it seems to lack, in the channel where that is most;
  * and it lacks so many standard deviations of a cell. */
 #define LEAST_DARKER 0.5F

@@ -12,6 +12,7 @@ from chromadock.geometry.pose import projected
 from chromadock.robust.frame.peaks import find_peaks
 from chromadock.robust.frame.refine import refined
 from chromadock.robust.frame.response import respond
+from chromadock.robust.weigh.acceptance import doubt_of_size
 
 CAMERA, DOCK = CameraModel.nominal(640, 480), DockGeometry.default()
 WATER, LAMP = np.array([0.35, 0.25, 0.03]), np.array([0.4, 0.1, 0.05])
@@ -22,7 +23,7 @@ def places(t: tuple[float, float, float]) -> np.ndarray:
     """(4, 2) pixels of the default dock's markers, at ``t`` metres and facing the camera."""
     seen = projected(DOCK.points, np.eye(3), np.array(t), CAMERA)
     assert seen is not None
-    return seen[0]
+    return np.asarray(seen[0])
 
 
 def picture(
@@ -38,7 +39,8 @@ def picture(
         light += lamp * np.exp(-0.5 * (away / (0.35 * radius_px)) ** 2)[..., None] * LAMP
     light = cv2.GaussianBlur(light, (0, 0), 0.8)
     grain = np.random.default_rng(seed).normal(0, 2, light.shape)
-    return np.clip(np.rint(to_encoded(light.astype(np.float32)) + grain), 0, 255).astype(np.uint8)
+    encoded = to_encoded(np.asarray(light, np.float32))
+    return np.asarray(np.clip(np.rint(encoded + grain), 0, 255), np.uint8)
 
 
 def detected(frame: np.ndarray) -> Detection:
@@ -99,3 +101,23 @@ def test_lamps_are_looked_for_first() -> None:
     told = detected(picture(places((0.1, 0.2, 2.0)), 7.0, 4.0))
     assert told.found
     assert told.marker.received_deg is not None
+
+
+@pytest.mark.parametrize(("smaller", "doubt"), [(0.0, 0.0), (0.025, 0.0455), (0.05, 0.3173)])
+def test_a_size_that_may_be_off_makes_a_range_doubtful(smaller: float, doubt: float) -> None:
+    assert doubt_of_size(smaller) == pytest.approx(doubt, abs=1e-4)
+
+
+@pytest.mark.parametrize(("bars", "state"), [(False, "found"), (True, "uncertain")])
+def test_dark_bars_which_draw_all_holders_together_leave_no_pose(bars: bool, state: str) -> None:
+    xy = places((0.1, 0.1, 3.0))
+    frame = picture(xy, 5.0)
+    if bars:
+        barred = frame.copy()
+        for ends in (xy[:2], xy[2:]):
+            (left, right) = np.rint(16 * ends).astype(int).tolist()
+            cv2.line(barred, left, right, (0, 0, 0), 5, cv2.LINE_AA, 4)
+        frame = cv2.addWeighted(frame, 0.2, barred, 0.8, 0)
+    told = detected(frame)
+    assert told.state == state
+    assert (told.pose is None) == bars

@@ -25,7 +25,9 @@ from chromadock.robust.weigh.acceptance import (
     LEAST_EVIDENCE,
     LEAST_FOR_A_TRACK,
     LIKELY,
+    MORE_OF_DARK,
     Constellation,
+    doubt_of_size,
 )
 from chromadock.robust.weigh.evidence import PlacedPeaks
 from chromadock.robust.weigh.placement import Placement, PosePrior, placement
@@ -67,6 +69,11 @@ class Measure:
     largest_range_m: float
     judged: NDArray[np.float64]
     misfits: list[Misfit] = field(default_factory=list)
+
+    @property
+    def _more(self) -> float:
+        """Evidence that is asked beside that of lamps."""
+        return MORE_OF_DARK if self.response.sense < 0 else 0.0
 
     @property
     def _shining(self) -> NDArray[np.uint8]:
@@ -122,7 +129,7 @@ class Measure:
                     area = float(view.camera.width * view.camera.height)
                     placed[cell] = PlacedPeaks(found.xy, found, area)
                 guess = expectation.guess(placed[cell], PEAK_ERROR * cell)
-                if guess is not None and guess.evidence >= LEAST_FOR_A_TRACK:
+                if guess is not None and guess.evidence >= LEAST_FOR_A_TRACK + self._more:
                     guesses.append((guess, cell, found))
         guesses.sort(key=lambda g: g[0].evidence, reverse=True)
         measured = (self._partly(*guess, priors) for guess in guesses)
@@ -156,7 +163,7 @@ class Measure:
         placed = placement(sighting, poses, self.prior)
         # So many places to choose from are so many chances for clutter.
         evidence = placed.log_density + candidate.looks - float(np.log(len(xy)))
-        if evidence < LEAST_EVIDENCE:
+        if evidence < LEAST_EVIDENCE + self._more:
             amiss = misfit(candidate.evidence, poses, np.hypot(sigma[k], drift[k]))
             self.misfits.extend(filter(None, [amiss]))
             return None
@@ -204,6 +211,9 @@ class Measure:
             sighting, poses, placed, drift_px, bright, self.prior, judged
         )
         drawn = smaller(sighting.pixels, leaning(self.frame_bgr, tops))
+        if self.response.sense < 0:
+            # A dark bar ends at no holder that is darker: it draws nearly each as far as it may.
+            unsure = max(unsure, doubt_of_size(drawn))
         return sighting, tuple(pose.drawn(drawn) for pose in poses), unsure, drawn
 
     def _partly(
@@ -227,7 +237,7 @@ class Measure:
             return None
         placed = placement(sighting, poses, self.prior)
         evidence = guess.evidence if guess.looks is None else placed.log_density + guess.looks
-        if evidence < LEAST_FOR_A_TRACK:
+        if evidence < LEAST_FOR_A_TRACK + self._more:
             return None
         whole = len(guess.markers) == len(self.view.points)
         amiss = misfit(evidence, poses, np.hypot(sigma, drift)) if whole else None

@@ -40,9 +40,10 @@ MORE_OF_DARK = float(np.log(10))
 in each frame, and are weighed by the looks of lamps.  On 1,800 drawn scenes of the half that was
 developed on 24 right docks are found so beside the others and 1 wrong one, without it 27 and 3."""
 
-HOPEFUL_DARK = float(4 * np.log(10))
-"""The same among what is dark, where next to no dock has less: it is looked at in each frame that
-shows no lamps, and must be quick."""
+HOPEFUL_DARK = float(6 * np.log(10))
+"""The same among what is dark, which is looked at in each frame that shows no lamps and must be
+quick: with four decades 1 dock more of 1,800 scenes is found, and the photograph that costs most
+takes half as long again."""
 
 PLACE_TOLERANCE = 0.05
 """Of the range: a pose whose place is farther off is wrong."""

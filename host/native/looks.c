@@ -78,24 +78,14 @@ static const float *cell_at(const front_frame_t *frame, const float *snr,
            most(0, least(column, layout->width[scale] - 1));
 }
 
-/* The most of a cell and the eight about it. */
-static float most_about(const float *cell, int stride)
+/* The most of a cell and the eight about it, each times the sense. */
+static float most_about(const float *cell, int stride, float sense)
 {
-    float near[8], highest = *cell;
+    float near[8], highest = sense * *cell;
     look_around(cell, stride, 1, near);
     for (int i = 0; i < 8; i++)
-        highest = greater(highest, near[i]);
+        highest = greater(highest, sense * near[i]);
     return highest;
-}
-
-/* The least of a cell and the eight about it. */
-static float least_about(const float *cell, int stride)
-{
-    float near[8], lowest = *cell;
-    look_around(cell, stride, 1, near);
-    for (int i = 0; i < 8; i++)
-        lowest = lesser(lowest, near[i]);
-    return lowest;
 }
 
 static void look_at_scales(const front_frame_t *frame, const summit_t *summit,
@@ -108,7 +98,7 @@ static void look_at_scales(const front_frame_t *frame, const summit_t *summit,
         const float *cell = cell_at(frame, frame->snr, scale + 1, xy);
         looks[FRONT_COARSER] = (double)(*cell / summit->centre);
         looks[FRONT_COARSER_MOST] =
-            (double)(most_about(cell, stride) / summit->centre);
+            (double)(most_about(cell, stride, 1) / summit->centre);
     }
     if (scale + 2 < frame->layout.scales)
         looks[FRONT_COARSEST] =
@@ -119,9 +109,8 @@ static void look_at_scales(const front_frame_t *frame, const summit_t *summit,
         const bool kept = frame->sense > 0 || scale > 1;
         const float *cell =
             cell_at(frame, kept ? frame->snr : frame->opposite, scale - 1, xy);
-        looks[FRONT_FINER_MOST] = (double)((kept ? most_about(cell, stride)
-                                                 : -least_about(cell, stride)) /
-                                           summit->centre);
+        looks[FRONT_FINER_MOST] =
+            (double)(most_about(cell, stride, kept ? 1 : -1) / summit->centre);
     }
 }
 

@@ -16,7 +16,7 @@ enum {
 
 typedef struct {
     const uint8_t *bgr;
-    int32_t height, width;
+    int32_t height, width, sense;
 } picture_t;
 
 /* Means of the 3 x 3 pixels about a place, to the nearest code; beyond the
@@ -34,7 +34,7 @@ static void mean_about(const picture_t *picture, double x, double y,
                 picture->bgr + 3 * (at * picture->width +
                                     within(column + across, picture->width));
             for (int c = 0; c < 3; c++)
-                sum[c] += pixel[c];
+                sum[c] += picture->sense > 0 ? pixel[c] : UINT8_MAX - pixel[c];
         }
     for (int c = 0; c < 3; c++)
         mean[c] = (2 * sum[c] + 9) / 18;
@@ -96,9 +96,9 @@ static bool is_level(const picture_t *picture, const double *from,
 }
 
 int32_t plateau_on_one_thing(const uint8_t *bgr, int32_t height, int32_t width,
-                             int32_t count, const double *places)
+                             int32_t count, const double *places, int32_t sense)
 {
-    const picture_t picture = {bgr, height, width};
+    const picture_t picture = {bgr, height, width, sense};
     for (int32_t i = 0; i < count; i++) {
         const double *own = places + (ptrdiff_t)2 * i, *nearest = NULL;
         double least = INFINITY;

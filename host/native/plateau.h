@@ -27,8 +27,10 @@ enum { PLATEAU_SAMPLES = 15 };
  * at both: 1 or 0.
  *
  * bgr: height x width x 3 codes. places: count x 2, x and y in pixels; count is
- * 2 or more. */
+ * 2 or more. sense: 1, or -1 for what is dark, where every code counts as its
+ * difference to 255. */
 int32_t plateau_on_one_thing(const uint8_t *bgr, int32_t height, int32_t width,
-                             int32_t count, const double *places);
+                             int32_t count, const double *places,
+                             int32_t sense);
 
 #endif

@@ -26,16 +26,14 @@ def places(t: tuple[float, float, float]) -> np.ndarray:
     return np.asarray(seen[0])
 
 
-def picture(
-    xy: np.ndarray, radius_px: float, lamp: float = 0.0, sign: float = -1.0, seed: int = 1
-) -> np.ndarray:
+def picture(xy: np.ndarray, radius_px: float, lamp: float = 0.0, seed: int = 1) -> np.ndarray:
     """Bright water with black discs at (n, 2) pixels, each with a lamp in its middle."""
     y, x = np.mgrid[0:480, 0:640].astype(np.float32)
     light = np.tile(WATER, (480, 640, 1)) * (1 + 0.3 * (y[..., None] / 480 - 0.5))
     for px, py in xy:
         away = np.hypot(x - px, y - py)
         inside = np.clip(radius_px + 0.5 - away, 0, 1)[..., None]
-        light = light * (1 + sign * 0.8 * inside)
+        light = light * (1 - 0.8 * inside)
         light += lamp * np.exp(-0.5 * (away / (0.35 * radius_px)) ** 2)[..., None] * LAMP
     light = cv2.GaussianBlur(light, (0, 0), 0.8)
     grain = np.random.default_rng(seed).normal(0, 2, light.shape)

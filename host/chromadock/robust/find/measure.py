@@ -75,12 +75,6 @@ class Measure:
         """Evidence that is asked beside that of lamps."""
         return MORE_OF_DARK if self.response.sense < 0 else 0.0
 
-    @property
-    def _shining(self) -> NDArray[np.uint8]:
-        """(H, W, 3): the frame, inverted where what is dark is looked for, so that it shines."""
-        dark = self.response.sense < 0
-        return np.bitwise_not(self.frame_bgr) if dark else self.frame_bgr
-
     def best(self, candidates: list[Candidate]) -> Constellation | None:
         """The dock: the candidate with most evidence, or what it is an image of."""
         accepted: list[Constellation] = []
@@ -154,7 +148,7 @@ class Measure:
         xy, sigma, drift = _choices(tops)
         likely = self.view.log_shape(xy, sigma, self.upright) if len(xy) > 1 else np.zeros(1)
         k = int(likely.argmax())
-        if on_one_thing(self._shining, xy[k]):
+        if on_one_thing(self.frame_bgr, xy[k], self.response.sense):
             return None
         sighting = Sighting(self.view.points, xy[k], sigma[k], self.view.camera)
         poses = estimates(sighting)
@@ -228,7 +222,7 @@ class Measure:
         nearest = [top.nearest(place) for top, place in zip(tops, places, strict=True)]
         xy, sigma, drift = (np.array(values) for values in zip(*nearest, strict=True))
         # Where a track has the dock its lamps may be so near that they run into each other.
-        if not priors and on_one_thing(self._shining, xy):
+        if not priors and on_one_thing(self.frame_bgr, xy, self.response.sense):
             return None
         points = self.view.points[guess.markers]
         sighting = Sighting(points, xy, sigma, self.view.camera)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from chromadock.robust.frame.native import lib, pointer
 
 
-def on_one_thing(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> bool:
+def on_one_thing(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64], sense: int = 1) -> bool:
     """Whether it is as bright between a marker and the nearest other one as at both.
 
     So it is between two corners of a pale box, or two places on a diver's light.  Two lamps have
@@ -22,7 +22,10 @@ def on_one_thing(frame_bgr: NDArray[np.uint8], xy: NDArray[np.float64]) -> bool:
     ----------
     frame_bgr : (H, W, 3) uint8.
     xy : (n, 2) pixels, two or more.
+    sense : 1, or -1 for dark markers, which have something brighter between them.
     """
     frame, places = np.ascontiguousarray(frame_bgr), np.ascontiguousarray(xy, np.float64)
     size = frame.shape[:2]
-    return bool(lib.plateau_on_one_thing(pointer(frame), *size, len(places), pointer(places)))
+    return bool(
+        lib.plateau_on_one_thing(pointer(frame), *size, len(places), pointer(places), sense)
+    )
